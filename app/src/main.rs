@@ -1,2 +1,155 @@
+//! The firmware image: two cores, the services between them and the ports.
+//!
+//! ```text
+//!   PULSES ─ PIO ─ DMA ─ ring ─▶ core 1: demodulate ─▶ queue ─▶ core 0: decode, track, report ─▶ CONSOLE (USB), COMMS_UART
+//! ```
+//! Core 1 (`core1`) runs from SRAM with interrupts masked and sleeps between blocks of samples. Core 0 is one loop: frames, seconds,
+//! commands, ports; it sleeps when a turn moved nothing. One interrupt handler exists, UART1's, in `hal`. USB, the timer's alarm and
+//! core 1 only end the sleep.
+//!
+//! The watchdog is fed by core 0 only after core 1 has taken another block: when either loop stops, the chip restarts within
+//! [`WATCHDOG_US`], through the bootloader, which verifies the image again.
+//!
+//! Defaults until settings exist: CONSOLE reports CSBEE, COMMS_UART BEAST at 115200 8N1, trigger level 1300 mV.
+//!
+//! Not here yet: settings, CONFIGURATION, GNSS and PPS, automatic trigger level, crash record.
 #![no_std]
 #![no_main]
+#![forbid(unsafe_code)]
+
+mod console;
+mod core1;
+mod port;
+mod receiver;
+mod reports;
+mod stats;
+
+use boot_contract::hand_over::{Cause, HandOver};
+use console::Console;
+use core::sync::atomic::Ordering;
+use core1::{Context, QUEUE_SLOTS, QueueCounters};
+use demod::{Counters, Demodulator, RawFrame, SampleRing};
+use drivers::led::Led;
+use drivers::pulse_capture::{CaptureCounters, PulseCapture};
+use drivers::trigger_level::{self, TriggerLevel};
+use hal::parts::TRIGGER_LEVEL_PERIOD;
+use hal::take_once::TakeOnce;
+use hal::{Parts, sleep, timer, uart::CommsUart, watchdog};
+use heapless::spsc::Queue;
+use port::Port;
+use receiver::{AIRCRAFT, Receiver, SharedCounters};
+use reports::Reports;
+use shell::Protocol;
+use stats::DecodeCounters;
+use tracker::Tracker;
+
+/// Without a check-in of both loops for this long the chip restarts, microseconds.
+const WATCHDOG_US: u32 = 3_000_000;
+/// Core 0 wakes at least this often: LED, a rate change, the watchdog. Microseconds.
+const BEAT_US: u64 = 50_000;
+const _: () = assert!(TRIGGER_LEVEL_PERIOD == trigger_level::PERIOD);
+
+static RING: SampleRing = SampleRing::new();
+static QUEUE: TakeOnce<Queue<RawFrame, QUEUE_SLOTS>> = TakeOnce::new(Queue::new());
+static CORE1: TakeOnce<Option<Context>> = TakeOnce::new(None);
+static TRACKER: TakeOnce<Tracker<AIRCRAFT>> = TakeOnce::new(Tracker::new());
+static SHARED: SharedCounters =
+    SharedCounters { capture: CaptureCounters::new(), demod: Counters::new(), queue: QueueCounters::new() };
+
+#[hal::entry]
+fn main() -> ! {
+    match start() {
+        Some(never) => match never {},
+        // Only a crystal that does not start, or a mistake of placement, leads here: there is no port to say it on.
+        None => watchdog::reset(HandOver::Restart(Cause::Other).words()),
+    }
+}
+
+/// Brings everything up and runs; `None` when something did not come up.
+fn start() -> Option<core::convert::Infallible> {
+    let cause = match HandOver::from_words(watchdog::hand_over_words()) {
+        Some(HandOver::Report(cause)) => Some(cause),
+        _ => None,
+    };
+    watchdog::set_hand_over_words([0, 0]);
+
+    let mut parts = Parts::take()?;
+    parts.watchdog.start(WATCHDOG_US);
+    let mut led = Led::new(parts.led);
+    // A PWM that cannot be set is not a thing on this chip: the error type is empty.
+    let _trigger_level = TriggerLevel::new(parts.trigger_level).ok()?;
+    let console = parts.usb.attach()?;
+
+    let (producer, consumer) = QUEUE.take()?.split();
+    let capture_start_us = timer::now_us();
+    let capture = PulseCapture::start(parts.sampler, parts.dma, &RING.words, &SHARED.capture).ok()?;
+    let context = CORE1.take()?;
+    *context = Some(Context {
+        capture,
+        ring: &RING,
+        demodulator: Demodulator::new(),
+        demod_counters: &SHARED.demod,
+        queue: producer,
+        queue_counters: &SHARED.queue,
+    });
+    let mut wakes = parts.core1.launch(context, core1::run);
+
+    let mut receiver = Receiver {
+        console: Port::new(console),
+        console_reports: Reports::new(Protocol::Csbee),
+        comms: Port::new(parts.comms_uart),
+        comms_reports: Reports::new(Protocol::Beast),
+        queue: consumer,
+        tracker: TRACKER.take()?,
+        shared: &SHARED,
+        decode: DecodeCounters::default(),
+        comms_received: 0,
+        capture_start_us,
+        start: cause,
+        second: 0,
+        last: (0, 0),
+        reboot_at_us: None,
+    };
+    let mut input = Console::new();
+    let mut next_beat_us = timer::now_us() + BEAT_US;
+    let mut blocks_seen = 0;
+
+    loop {
+        wakes.drain();
+        timer::acknowledge_alarm();
+        let more_frames = receiver.frames(|| led.frame());
+        let more_reports = receiver.reports();
+        let more_bytes = receiver.commands(&mut input);
+        receiver.reboot_if_due();
+
+        let now_us = timer::now_us();
+        if now_us >= next_beat_us {
+            led.beat();
+            next_beat_us = next_beat(now_us, capture_start_us);
+        }
+        let blocks = SHARED.capture.blocks.load(Ordering::Relaxed);
+        if blocks != blocks_seen {
+            blocks_seen = blocks;
+            parts.watchdog.feed();
+        }
+        if !(more_frames || more_reports || more_bytes) {
+            timer::set_alarm(next_beat_us);
+            sleep::unless(|| {
+                receiver.queue.ready() || CommsUart::has_received() || timer::now_us() >= next_beat_us
+            });
+        }
+    }
+}
+
+/// The next beat: on a multiple of [`BEAT_US`] of uptime, so that the seconds begin on time.
+fn next_beat(now_us: u64, capture_start_us: u64) -> u64 {
+    let uptime_us = now_us - capture_start_us;
+    capture_start_us + (uptime_us / BEAT_US + 1) * BEAT_US
+}
+
+/// Resets through the watchdog; the bootloader passes the cause on and the next start tells it. What panicked and where is not
+/// kept yet.
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    watchdog::reset(HandOver::Restart(Cause::Panic).words())
+}

@@ -1,1 +1,87 @@
-fn main() {}
+//! `squitter`: run the twin, replay recordings, decode frames.
+//!
+//! Exit codes: 0 done; 1 something went wrong, told on standard error; 2 the command line is wrong.
+#![forbid(unsafe_code)]
+
+mod beast;
+mod decode;
+mod device;
+mod json;
+mod live;
+mod output;
+mod ports;
+mod radio;
+mod replay;
+
+use std::process::ExitCode;
+
+use clap::Command;
+
+/// What ends a command early. The text says the cause and, where there is something to do, what.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    #[error(transparent)]
+    Source(#[from] twin::source::Error),
+    #[error(transparent)]
+    Board(#[from] twin::board::Error),
+    #[error("cannot write the output: {0}")]
+    Output(#[from] std::io::Error),
+    #[error("cannot open a serial port for {port}: {cause}")]
+    Port {
+        port: &'static str,
+        cause: std::io::Error,
+    },
+    #[error("{0}")]
+    Usage(String),
+    #[error("{path}: {cause}")]
+    File { path: String, cause: std::io::Error },
+    #[error("the device answered `{command}` with: {answer}")]
+    Refused { command: String, answer: String },
+    #[error("{refused} of {lines} lines were not frames; the first: line {first}: {reason}")]
+    BadLines {
+        refused: u64,
+        lines: u64,
+        first: u64,
+        reason: String,
+    },
+}
+
+fn command() -> Command {
+    Command::new("squitter")
+        .about("Squitter: a 1090 MHz receiver, run and tested without a board")
+        .after_help(
+            "Exit codes: 0 done, 1 failed (the cause is on standard error), 2 wrong command line.",
+        )
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommand(replay::command())
+        .subcommand(live::command())
+        .subcommand(decode::command())
+}
+
+fn main() -> ExitCode {
+    let matches = command().get_matches();
+    let done = match matches.subcommand() {
+        Some(("replay", m)) => replay::run(m),
+        Some(("twin", m)) => live::run(m),
+        Some(("decode", m)) => decode::run(m),
+        _ => Ok(()),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        // The reader went away (`squitter … | head`): nothing is left to do.
+        Err(Failure::Output(e)) if e.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("squitter: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_command_line_is_consistent() {
+        super::command().debug_assert();
+    }
+}

@@ -1,1 +1,45 @@
+//! The one place that names registers and `rp2040-hal`. What leaves this crate is safe and speaks of rings, ports and time.
+//!
+//! Not here: what a pulse, a message or a setting means (services), what hangs on a pin (drivers; the board files only name it).
+//!
+//! | module | gives | registers |
+//! |---|---|---|
+//! | [`parts`] | everything, brought up once, in order | RESETS, XOSC, PLL_SYS, PLL_USB, CLOCKS, WATCHDOG.TICK |
+//! | [`board`] | pins by net name | IO_BANK0, PADS_BANK0 |
+//! | [`pio_sampler`] | PULSES at 8 Msps, 32 samples a word | PIO0 SM0 |
+//! | [`dma_ring`] | a ring that DMA fills for ever | DMA channels 0 and 1, INTS1 |
+//! | [`timer`] | microseconds, one alarm | TIMER |
+//! | [`uart`] | COMMS_UART, both ways by interrupt | UART1 |
+//! | [`usb`] | the console's CDC ACM port | USBCTRL |
+//! | [`watchdog`] | feeding, forced reset, scratch 2/3, reset source | WATCHDOG, PSM.WDSEL, VREG_AND_CHIP_RESET |
+//! | [`core1`] | starting the second core; waking the first | PSM, SIO FIFO |
+//! | [`sleep`] | WFI without a lost wake-up | NVIC |
+//! | [`boot`] | flash as bytes, jump into an image | XIP, VTOR |
+//! | [`byte_ring`], [`take_once`] | whole messages or nothing; statics handed out once | – |
+//!
+//! Core 1 runs from SRAM alone. What it calls here is `dma_ring`, `timer`, `core1` and `pio_sampler`, which `linker/app_slot_a.x`
+//! places by name; a function that core 1 needs must live in one of these.
 #![no_std]
+
+pub mod board;
+pub mod boot;
+pub mod byte_ring;
+pub mod core1;
+pub mod dma_ring;
+pub mod parts;
+pub mod pio_sampler;
+pub mod sleep;
+pub mod take_once;
+pub mod timer;
+pub mod uart;
+pub mod usb;
+pub mod watchdog;
+
+pub use parts::Parts;
+/// Marks the function that core 0 enters after start-up; it also frees the hardware spinlocks.
+pub use rp2040_hal::entry;
+
+/// System clock, Hz: crystal 12 MHz, PLL_SYS VCO 1200 MHz, / 5 / 2. One cycle is one tick of a frame's time.
+pub const SYSTEM_HZ: u32 = 120_000_000;
+/// Crystal of all known boards, Hz.
+pub const CRYSTAL_HZ: u32 = 12_000_000;

@@ -1,2 +1,96 @@
+//! Boot decisions, pure: what the bootloader does with what it finds. No register, no flash access, no clock; the same code is
+//! tested on the host and runs on the chip.
+//!
+//! ```text
+//!  scratch words say Run ──────────────────────────────▶ Jump       (clear the words, leave a report, set VTOR, jump)
+//!  anything else ── slot A good ───────────────────────▶ HandOver   (write Run, watchdog reset: come back with clean peripherals)
+//!                └─ slot A refused ────────────────────▶ Stay       (tell the reason on COMMS_UART)
+//! ```
+//! The jump itself does not verify again: the request word is only ever written after a verification, and the reset between the
+//! two is microseconds long.
+//!
+//! Not here yet: slot B, trial and rollback, the boot log, the update, the 3 s window, the lock.
 #![no_std]
 #![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+mod slot;
+
+pub use slot::{Refusal, check_slot};
+
+use boot_contract::hand_over::{Cause, HandOver};
+
+/// What reset the chip, as its registers say; the hand-over words know more when they hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ResetSource {
+    /// Power-on, brown-out, RUN pin.
+    PowerOn,
+    /// The watchdog's count ran out.
+    WatchdogTimer,
+    /// The watchdog was triggered by software.
+    WatchdogForce,
+}
+
+/// What to do first thing after a reset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// Jump into the slot at once, leaving this report.
+    Jump(Cause),
+    /// Verify the slot, for a start of this cause.
+    Verify(Cause),
+}
+
+/// Reads the hand-over words and the reset source.
+pub fn start(words: [u32; 2], source: ResetSource) -> Start {
+    // After power-on the words are undefined: whatever they seem to say, verify.
+    if source == ResetSource::PowerOn {
+        return Start::Verify(Cause::PowerOn);
+    }
+    match (HandOver::from_words(words), source) {
+        (Some(HandOver::Run(cause)), ResetSource::WatchdogForce) => Start::Jump(cause),
+        (Some(HandOver::Restart(cause)), _) => Start::Verify(cause),
+        (_, ResetSource::WatchdogTimer) => Start::Verify(Cause::Watchdog),
+        (_, _) => Start::Verify(Cause::Other),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_request_after_a_forced_reset_jumps_with_its_cause() {
+        let words = HandOver::Run(Cause::Panic).words();
+        assert_eq!(start(words, ResetSource::WatchdogForce), Start::Jump(Cause::Panic));
+    }
+
+    #[test]
+    fn a_run_request_that_power_on_left_behind_is_not_believed() {
+        let words = HandOver::Run(Cause::PowerOn).words();
+        assert_eq!(start(words, ResetSource::PowerOn), Start::Verify(Cause::PowerOn));
+        assert_eq!(start(words, ResetSource::WatchdogTimer), Start::Verify(Cause::Watchdog));
+    }
+
+    #[test]
+    fn a_report_is_never_taken_for_a_request() {
+        let words = HandOver::Report(Cause::PowerOn).words();
+        assert_eq!(start(words, ResetSource::WatchdogForce), Start::Verify(Cause::Other));
+        assert_eq!(start(words, ResetSource::WatchdogTimer), Start::Verify(Cause::Watchdog));
+    }
+
+    #[test]
+    fn a_restart_names_its_own_cause() {
+        for cause in [Cause::Command, Cause::Panic] {
+            let words = HandOver::Restart(cause).words();
+            assert_eq!(start(words, ResetSource::WatchdogForce), Start::Verify(cause));
+        }
+    }
+
+    #[test]
+    fn half_a_word_pair_verifies() {
+        let [word, _] = HandOver::Run(Cause::PowerOn).words();
+        assert_eq!(start([word, 0], ResetSource::WatchdogForce), Start::Verify(Cause::Other));
+    }
+}

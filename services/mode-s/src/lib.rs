@@ -1,2 +1,55 @@
+//! Mode S and ADS-B on 1090 MHz: from 56 or 112 bits to the fields of a message.
+//!
+//! ```text
+//!   Frame ──residual──► Parity ──► Message { df, parity, body } ──► Me (one file an ME type)
+//!                                                   Cpr ──► Position (pair, or one near a known place)
+//! ```
+//!
+//! What it is not: it keeps no state between frames (that is the tracker), repairs no bits (that is the demodulator) and formats
+//! nothing (that is `report`). It uses integers end to end: positions are 1e-7 degrees, altitudes feet, angles 1e-2 degrees, because
+//! the processor it was written for has no floating point.
+//!
+//! Field names are those of ICAO Annex 10 Volume IV and RTCA DO-260B; the bit layouts follow the public descriptions in
+//! "The 1090 Megahertz Riddle" (J. Sun, 2nd edition) and the ICAO Technical Provisions for Mode S (Doc 9871).
+//!
+//! | DF | what it is | decoded |
+//! |---|---|---|
+//! | 0, 16 | air-to-air surveillance | vertical status, altitude |
+//! | 4, 20 | altitude reply, Comm-B | flight status, altitude; MB is not |
+//! | 5, 21 | identity reply, Comm-B | flight status, Mode A code; MB is not |
+//! | 11 | all-call reply | capability |
+//! | 17, 18 | extended squitter | ME type codes 1-22 but the reserved ones; others are named as not decoded |
+//! | 19, 24 and the rest | military, Comm-D, unassigned | no: counted as not decoded |
 #![no_std]
 #![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+pub mod address;
+pub mod altitude;
+pub mod angle;
+pub mod cpr;
+pub mod crc24;
+pub mod frame;
+pub mod identity;
+pub mod me;
+pub mod message;
+pub mod nl;
+pub mod parity;
+pub mod surveillance;
+
+pub use address::{Address, Icao};
+pub use altitude::{Ac12, Ac13, AltitudeFt};
+pub use angle::CentiDegrees;
+pub use cpr::{Cpr, CprFormat, CprKind, Position};
+pub use frame::{Df, Frame, FrameError};
+pub use identity::ModeACode;
+pub use me::Me;
+pub use me::airborne_position::{AirbornePosition, AltitudeSource, PositionAltitude};
+pub use me::identification::{Callsign, Category, Identification};
+pub use me::surface_position::SurfacePosition;
+pub use me::velocity::{Airspeed, HorizontalVelocity, Velocity, VerticalRate};
+pub use message::{Body, Message};
+pub use parity::Parity;
+pub use surveillance::{Capability, FlightStatus};

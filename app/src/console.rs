@@ -1,0 +1,110 @@
+//! CONSOLE's commands, carried out: the ADSBee dialect of RUN, as far as it is built (`shell` parses it).
+//!
+//! A reply is one or more whole lines with `\r\n`; like every message it is dropped and counted when the port has no room.
+
+use crate::port::{Outlet, Port};
+use crate::receiver::Receiver;
+use core::fmt::{self, Write};
+use hal::usb::UsbConsole;
+use shell::{BaudRateReply, LineReader, OK, ProtocolReply, Refusal, Request, Uart, help_lines};
+
+/// Bytes of the longest reply line and its end.
+const MAX_REPLY: usize = crate::stats::MAX_LINE + 2;
+
+/// Lines a turn of the loop answers at most; more wait for the next turn.
+const LINES_A_TURN: usize = 4;
+
+/// CONSOLE's input.
+pub struct Console {
+    reader: LineReader,
+    waiting: heapless::Deque<Result<Request, Refusal>, LINES_A_TURN>,
+    /// Commands that came faster than they could be answered.
+    pub overrun: u32,
+}
+
+impl Console {
+    /// At the start of a line.
+    pub const fn new() -> Self {
+        Self { reader: LineReader::new(), waiting: heapless::Deque::new(), overrun: 0 }
+    }
+
+    /// Takes what has arrived and moves what waits to be sent. Returns whether anything moved.
+    pub fn poll(&mut self, port: &mut Port<UsbConsole>) -> bool {
+        let Self { reader, waiting, overrun } = self;
+        port.outlet.poll(|byte| {
+            if let Some(command) = reader.feed(byte)
+                && waiting.push_back(command).is_err()
+            {
+                *overrun = overrun.wrapping_add(1);
+            }
+        })
+    }
+
+    /// The next command to answer.
+    pub fn next(&mut self) -> Option<Result<Request, Refusal>> {
+        self.waiting.pop_front()
+    }
+}
+
+/// Carries out one command and replies on CONSOLE.
+pub fn answer(command: Result<Request, Refusal>, receiver: &mut Receiver) {
+    let request = match command {
+        Ok(request) => request,
+        Err(refusal) => return reply(&mut receiver.console, format_args!("{refusal}")),
+    };
+    match request {
+        Request::Help => {
+            for (name, help) in help_lines() {
+                reply(&mut receiver.console, format_args!("{name}:{help}"));
+            }
+            reply(&mut receiver.console, format_args!("{OK}"));
+        }
+        Request::QueryStatistics => receiver.tell_statistics(|port, line| match line {
+            Ok(line) => reply(port, format_args!("{line}")),
+            Err(fmt::Error) => port.dropped_unmade(1),
+        }),
+        Request::QueryProtocol => {
+            let text = ProtocolReply {
+                console: receiver.console_reports.protocol(),
+                comms_uart: receiver.comms_reports.protocol(),
+            };
+            reply(&mut receiver.console, format_args!("{text}"));
+        }
+        Request::SetProtocol { port, protocol } => {
+            if let (Some(port), Some(protocol)) = (port, protocol) {
+                match port {
+                    shell::Port::Console => receiver.console_reports.set_protocol(protocol),
+                    shell::Port::CommsUart => receiver.comms_reports.set_protocol(protocol),
+                }
+            }
+            reply(&mut receiver.console, format_args!("{OK}"));
+        }
+        Request::QueryBaudRate => {
+            // GNSS_UART is not driven yet: rate 0.
+            let text = BaudRateReply { comms_uart: receiver.comms.outlet.baud(), gnss_uart: 0 };
+            reply(&mut receiver.console, format_args!("{text}"));
+        }
+        Request::SetBaudRate { uart: Some(Uart::Comms), baud: Some(baud) } => {
+            let done = receiver.comms.outlet.request_baud(baud).is_some();
+            let text = if done { OK } else { "ERROR baud rate out of range" };
+            reply(&mut receiver.console, format_args!("{text}"));
+        }
+        Request::SetBaudRate { uart: Some(Uart::Gnss), baud: Some(_) } => {
+            reply(&mut receiver.console, format_args!("ERROR GNSS_UART is not built yet"));
+        }
+        Request::SetBaudRate { .. } => reply(&mut receiver.console, format_args!("{OK}")),
+        Request::Reboot => {
+            reply(&mut receiver.console, format_args!("{OK}"));
+            receiver.reboot_soon();
+        }
+    }
+}
+
+/// One reply line.
+fn reply<O: Outlet>(port: &mut Port<O>, text: fmt::Arguments<'_>) {
+    let mut line = heapless::String::<MAX_REPLY>::new();
+    match write!(line, "{text}\r\n") {
+        Ok(()) => port.message(line.as_bytes()),
+        Err(fmt::Error) => port.dropped_unmade(1),
+    }
+}

@@ -1,0 +1,80 @@
+//! Core 1: from blocks of samples to frames in the queue. Nothing else, for ever, from SRAM alone.
+//!
+//! ```text
+//!   wait (WFI) for 32 words ─▶ demodulate up to the newest word ─▶ queue of 127 frames ─▶ wake core 0 if any
+//!     128 us                     the budget: 15 360 cycles a block       full: dropped, counted
+//! ```
+//! Everything here, and all it calls, is placed in SRAM by `linker/app_slot_a.x`; interrupts stay masked.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+use demod::{Counters, Demodulator, RING_WORDS, RawFrame, SampleRing};
+use drivers::pulse_capture::PulseCapture;
+use heapless::spsc::Producer;
+
+/// Slots of the frame queue; it holds one frame less. 127 frames are 15 ms of back-to-back long frames.
+pub const QUEUE_SLOTS: usize = 128;
+
+/// What became of accepted frames at the queue: `offered = queued + dropped`.
+pub struct QueueCounters {
+    /// Frames the demodulator accepted.
+    pub offered: AtomicU32,
+    /// Frames handed to core 0.
+    pub queued: AtomicU32,
+    /// Frames lost because core 0 was late.
+    pub dropped: AtomicU32,
+}
+
+impl QueueCounters {
+    /// All zero.
+    pub const fn new() -> Self {
+        Self { offered: AtomicU32::new(0), queued: AtomicU32::new(0), dropped: AtomicU32::new(0) }
+    }
+}
+
+/// What core 1 owns.
+pub struct Context {
+    pub capture: PulseCapture<RING_WORDS>,
+    pub ring: &'static SampleRing,
+    pub demodulator: Demodulator,
+    pub demod_counters: &'static Counters,
+    pub queue: Producer<'static, RawFrame>,
+    pub queue_counters: &'static QueueCounters,
+}
+
+/// Core 1's loop.
+pub fn run(slot: &'static mut Option<Context>) -> ! {
+    let Some(context) = slot else {
+        // Core 0 fills the slot before it starts this core. Without it no block is ever counted, and the watchdog ends this.
+        loop {
+            hal::core1::idle();
+        }
+    };
+    context.capture.attach();
+    loop {
+        block(context);
+    }
+}
+
+/// One block of samples.
+fn block(context: &mut Context) {
+    let written = context.capture.wait();
+    let Context { ring, demodulator, demod_counters, queue, queue_counters, .. } = context;
+    let mut heard = false;
+    demodulator.run(ring, written, demod_counters, &mut |frame| {
+        heard = true;
+        count(&queue_counters.offered);
+        match queue.enqueue(frame) {
+            Ok(()) => count(&queue_counters.queued),
+            Err(_) => count(&queue_counters.dropped),
+        }
+    });
+    if heard {
+        hal::core1::wake_core0();
+    }
+}
+
+/// One writer: a load and a store do.
+#[inline(always)]
+fn count(counter: &AtomicU32) {
+    counter.store(counter.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
+}

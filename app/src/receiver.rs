@@ -1,0 +1,152 @@
+//! Core 0's work: frames from the queue to tracker and reports, a second's turn, commands.
+//!
+//! ```text
+//!   queue ─ Message ─┬─ tracker
+//!                    ├─ CONSOLE reports ─▶ port
+//!                    └─ COMMS_UART reports ─▶ port
+//!   second ─ tracker.each_second ─ #S and bursts
+//! ```
+//! Time here is milliseconds of uptime, counted from the first sample, which is the zero of the frames' ticks too.
+
+use crate::console::{self, Console};
+use crate::core1::QueueCounters;
+use crate::port::Port;
+use crate::reports::Reports;
+use crate::stats::{DecodeCounters, Line, Stats};
+use boot_contract::hand_over::{Cause, HandOver};
+use core::fmt;
+use demod::RawFrame;
+use drivers::pulse_capture::CaptureCounters;
+use hal::{timer, uart::CommsUart, usb::UsbConsole, watchdog};
+use heapless::spsc::Consumer;
+use mode_s::Message;
+use report::csbee;
+use tracker::Tracker;
+
+/// Aircraft tracked at once.
+pub const AIRCRAFT: usize = 400;
+/// Ticks (120 MHz) a millisecond.
+const TICKS_PER_MS: u64 = timer::TICKS_PER_US * 1000;
+/// Time for `AT+REBOOT`'s reply to leave, microseconds.
+const REBOOT_AFTER_US: u64 = 100_000;
+/// Frames a turn of the loop: so that ports are served in between.
+const FRAMES_A_TURN: usize = 16;
+
+/// Counters that core 1 writes.
+pub struct SharedCounters {
+    pub capture: CaptureCounters,
+    pub demod: demod::Counters,
+    pub queue: QueueCounters,
+}
+
+/// Everything core 0 works with.
+pub struct Receiver {
+    pub console: Port<UsbConsole>,
+    pub console_reports: Reports,
+    pub comms: Port<CommsUart>,
+    pub comms_reports: Reports,
+    pub queue: Consumer<'static, RawFrame>,
+    pub tracker: &'static mut Tracker<AIRCRAFT>,
+    pub shared: &'static SharedCounters,
+    pub decode: DecodeCounters,
+    pub comms_received: u32,
+    /// Microseconds of the timer at the first sample.
+    pub capture_start_us: u64,
+    pub start: Option<Cause>,
+    /// The second under way, of uptime.
+    pub second: u32,
+    /// Counts at the start of the second: demodulated, decoded.
+    pub last: (u32, u32),
+    pub reboot_at_us: Option<u64>,
+}
+
+impl Receiver {
+    /// Uptime, milliseconds.
+    fn now_ms(&self) -> u64 {
+        (timer::now_us().saturating_sub(self.capture_start_us)) / 1000
+    }
+
+    /// Takes frames from the queue. Returns whether more wait; `heard` is called for each.
+    pub fn frames(&mut self, mut heard: impl FnMut()) -> bool {
+        for _ in 0..FRAMES_A_TURN {
+            let Some(raw_frame) = self.queue.dequeue() else { return false };
+            heard();
+            let message = Message::decode(&raw_frame.frame);
+            self.decode.count(message.parity);
+            self.tracker.on_frame(&message, raw_frame.arrival / TICKS_PER_MS);
+            self.console_reports.frame(&mut self.console, &raw_frame);
+            self.comms_reports.frame(&mut self.comms, &raw_frame);
+        }
+        self.queue.ready()
+    }
+
+    /// Begins a second when it is time; goes on with the bursts. Returns whether there is more to send at once.
+    pub fn reports(&mut self) -> bool {
+        let now_ms = self.now_ms();
+        let second = (now_ms / 1000) as u32;
+        if second != self.second {
+            self.second = second;
+            self.tracker.each_second(now_ms);
+            let demodulated = self.shared.demod.snapshot().demodulated;
+            let statistics = csbee::Statistics {
+                demodulations: Some(demodulated.wrapping_sub(self.last.0)),
+                mode_ac_frames: None,
+                mode_s_frames: Some(self.decode.offered.wrapping_sub(self.last.1)),
+                stamp_clock_hz: None,
+                uptime_s: second,
+            };
+            self.last = (demodulated, self.decode.offered);
+            self.console_reports.second(&mut self.console, self.tracker, &statistics);
+            self.comms_reports.second(&mut self.comms, self.tracker, &statistics);
+        }
+        let console = self.console_reports.turn(&mut self.console, self.tracker, now_ms);
+        let comms = self.comms_reports.turn(&mut self.comms, self.tracker, now_ms);
+        console | comms
+    }
+
+    /// Answers commands; takes away what COMMS_UART received (nothing is commanded there yet). Returns whether anything moved.
+    pub fn commands(&mut self, input: &mut Console) -> bool {
+        let mut moved = input.poll(&mut self.console);
+        while let Some(command) = input.next() {
+            console::answer(command, self);
+            moved = true;
+        }
+        while self.comms.outlet.receive().is_some() {
+            self.comms_received = self.comms_received.wrapping_add(1);
+        }
+        self.comms.outlet.serve();
+        moved
+    }
+
+    /// Restarts once the reply has had its time.
+    pub fn reboot_soon(&mut self) {
+        self.reboot_at_us = Some(timer::now_us() + REBOOT_AFTER_US);
+    }
+
+    /// Restarts if asked to and due.
+    pub fn reboot_if_due(&self) {
+        if self.reboot_at_us.is_some_and(|at| timer::now_us() >= at) {
+            watchdog::reset(HandOver::Restart(Cause::Command).words());
+        }
+    }
+
+    /// Gives each line of `AT+STATS?`, with CONSOLE to send it on.
+    pub fn tell_statistics(&mut self, mut tell: impl FnMut(&mut Port<UsbConsole>, Result<Line, fmt::Error>)) {
+        let stats = Stats {
+            uptime_s: self.second,
+            start: self.start,
+            capture: &self.shared.capture,
+            demod: &self.shared.demod,
+            queue: &self.shared.queue,
+            queue_waiting: self.queue.len(),
+            decode: &self.decode,
+            tracker: self.tracker.counters(),
+            tracked: self.tracker.len(),
+            console: self.console.counters,
+            comms_uart: self.comms.counters,
+            comms_received: self.comms_received,
+            comms_received_lost: self.comms.outlet.received_lost(),
+        };
+        stats.lines(|line| tell(&mut self.console, line));
+    }
+}

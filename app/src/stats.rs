@@ -1,0 +1,164 @@
+//! What `AT+STATS?` prints: every stage, what it was offered, what it passed on, what it refused and why.
+//!
+//! ```text
+//!   +STATS=DEVICE,uptime_s=..,start=..          why this start happened
+//!   +STATS=CAPTURE,blocks=..,words=..,..        128 us a block
+//!   +STATS=DEMOD,words=..,candidates=..,..      candidates = one outcome each, see services/demod
+//!   +STATS=QUEUE,offered=..,queued=..,dropped=..,waiting=..
+//!   +STATS=DECODE,offered=..,exact=..,..
+//!   +STATS=TRACKER,offered=..,born=..,..        see services/tracker
+//!   +STATS=CONSOLE,offered=..,sent=..,dropped=..,bytes=..
+//!   +STATS=COMMS_UART,offered=..,sent=..,dropped=..,bytes=..,received=..,received_lost=..
+//! ```
+//! The sums that hold at rest (while frames arrive they may be off by what is under way):
+//!
+//! | sum |
+//! |---|
+//! | DEMOD accepted_exact + accepted_interrogator + accepted_address = QUEUE offered |
+//! | QUEUE offered = queued + dropped |
+//! | QUEUE queued = DECODE offered + QUEUE waiting |
+//! | DECODE offered = exact + interrogator + address + broken + unjudged = TRACKER offered |
+//! | TRACKER offered = born + updated + unknown_address + broken + not_tracked |
+//! | each port: offered = sent + dropped |
+//!
+//! All counters are 32 bits and wrap.
+
+use crate::core1::QueueCounters;
+use crate::port::PortCounters;
+use boot_contract::hand_over::Cause;
+use core::fmt::{self, Write};
+use core::sync::atomic::{AtomicU32, Ordering};
+use drivers::pulse_capture::CaptureCounters;
+use mode_s::Parity;
+
+/// Frames taken from the queue, by what their parity says: `offered` is the sum of the rest.
+#[derive(Clone, Copy, Default)]
+pub struct DecodeCounters {
+    pub offered: u32,
+    pub exact: u32,
+    pub interrogator: u32,
+    pub address: u32,
+    pub broken: u32,
+    pub unjudged: u32,
+}
+
+/// Everything the reply needs, by reference.
+pub struct Stats<'a> {
+    pub uptime_s: u32,
+    pub start: Option<Cause>,
+    pub capture: &'a CaptureCounters,
+    pub demod: &'a demod::Counters,
+    pub queue: &'a QueueCounters,
+    pub queue_waiting: usize,
+    pub decode: &'a DecodeCounters,
+    pub tracker: tracker::Counters,
+    pub tracked: usize,
+    pub console: PortCounters,
+    pub comms_uart: PortCounters,
+    pub comms_received: u32,
+    pub comms_received_lost: u32,
+}
+
+/// Bytes of the longest line: DEMOD, 14 counters of up to ten digits.
+pub const MAX_LINE: usize = 512;
+
+/// One line without its end.
+pub type Line = heapless::String<MAX_LINE>;
+
+fn value(counter: &AtomicU32) -> u32 {
+    counter.load(Ordering::Relaxed)
+}
+
+fn line(stage: &str, pairs: &[(&str, u32)]) -> Result<Line, fmt::Error> {
+    let mut line = Line::new();
+    write!(line, "+STATS={stage}")?;
+    for (name, value) in pairs {
+        write!(line, ",{name}={value}")?;
+    }
+    Ok(line)
+}
+
+fn port(stage: &str, counters: &PortCounters) -> Result<Line, fmt::Error> {
+    let PortCounters { offered, sent, dropped, bytes } = *counters;
+    line(stage, &[("offered", offered), ("sent", sent), ("dropped", dropped), ("bytes", bytes)])
+}
+
+impl Stats<'_> {
+    /// Gives each line to `out`; a line that does not fit its buffer is an error the caller counts.
+    pub fn lines(&self, mut out: impl FnMut(Result<Line, fmt::Error>)) {
+        let start = self.start.map_or("unknown", Cause::name);
+        out(line("DEVICE", &[("uptime_s", self.uptime_s)]).and_then(|mut line| {
+            write!(line, ",start={start}")?;
+            Ok(line)
+        }));
+        out(line(
+            "CAPTURE",
+            &[
+                ("blocks", value(&self.capture.blocks)),
+                ("words", value(&self.capture.words)),
+                ("fifo_overflows", value(&self.capture.fifo_overflows)),
+            ],
+        ));
+        out(line("DEMOD", &self.demod.snapshot().named()));
+        out(line(
+            "QUEUE",
+            &[
+                ("offered", value(&self.queue.offered)),
+                ("queued", value(&self.queue.queued)),
+                ("dropped", value(&self.queue.dropped)),
+                ("waiting", self.queue_waiting as u32),
+            ],
+        ));
+        let decode = self.decode;
+        out(line(
+            "DECODE",
+            &[
+                ("offered", decode.offered),
+                ("exact", decode.exact),
+                ("interrogator", decode.interrogator),
+                ("address", decode.address),
+                ("broken", decode.broken),
+                ("unjudged", decode.unjudged),
+            ],
+        ));
+        let tracker = &self.tracker;
+        out(line(
+            "TRACKER",
+            &[
+                ("offered", tracker.offered),
+                ("born", tracker.born),
+                ("updated", tracker.updated),
+                ("unknown_address", tracker.unknown_address),
+                ("broken", tracker.broken),
+                ("not_tracked", tracker.not_tracked),
+                ("positions", tracker.positions),
+                ("positions_shown", tracker.positions_shown),
+                ("positions_waiting", tracker.positions_waiting),
+                ("positions_refused", tracker.positions_refused),
+                ("timed_out", tracker.timed_out),
+                ("displaced", tracker.displaced),
+                ("tracked", self.tracked as u32),
+            ],
+        ));
+        out(port("CONSOLE", &self.console));
+        out(port("COMMS_UART", &self.comms_uart).and_then(|mut line| {
+            write!(line, ",received={},received_lost={}", self.comms_received, self.comms_received_lost)?;
+            Ok(line)
+        }));
+    }
+}
+
+impl DecodeCounters {
+    /// Counts one frame by its parity.
+    pub fn count(&mut self, parity: Parity) {
+        self.offered = self.offered.wrapping_add(1);
+        let counter = match parity {
+            Parity::Exact(_) => &mut self.exact,
+            Parity::Interrogator { .. } => &mut self.interrogator,
+            Parity::Address(_) => &mut self.address,
+            Parity::Broken => &mut self.broken,
+            Parity::Unjudged => &mut self.unjudged,
+        };
+        *counter = counter.wrapping_add(1);
+    }
+}

@@ -1,0 +1,146 @@
+//! The hand-over words: watchdog scratch 2 and 3, which survive every reset but power-on.
+//!
+//! ```text
+//! scratch 2   0x5351_kkcc   "SQ", kind, cause
+//! scratch 3   its complement
+//! ```
+//! Scratch 0/1 and 4-7 belong to others (the ROM keeps its own vector in 4-7). Words whose complement does not match are
+//! nobody's: power-on leaves them undefined.
+//!
+//! | kind | written by | read by | means |
+//! |---|---|---|---|
+//! | run | bootloader, slot verified, then watchdog reset | bootloader | jump first thing: the peripherals are as after a reset |
+//! | report | bootloader, just before the jump | app | why this start happened; never taken for a request |
+//! | restart | app (`AT+REBOOT`, panic), then watchdog reset | bootloader | why the app gave up; the slot is verified again |
+
+/// Upper half of every hand-over word.
+const TAG: u32 = 0x5351_0000;
+const KIND_RUN: u32 = 0x01;
+const KIND_REPORT: u32 = 0x02;
+const KIND_RESTART: u32 = 0x03;
+
+/// Why the device started.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// Power-on, brown-out or the RUN pin.
+    PowerOn,
+    /// The watchdog ran out: a loop did not check in.
+    Watchdog,
+    /// `AT+REBOOT`.
+    Command,
+    /// The app panicked.
+    Panic,
+    /// A forced reset by nobody we know (a debugger, for one).
+    Other,
+}
+
+impl Cause {
+    fn code(self) -> u32 {
+        match self {
+            Cause::PowerOn => 1,
+            Cause::Watchdog => 2,
+            Cause::Command => 3,
+            Cause::Panic => 4,
+            Cause::Other => 5,
+        }
+    }
+
+    fn from_code(code: u32) -> Option<Cause> {
+        Some(match code {
+            1 => Cause::PowerOn,
+            2 => Cause::Watchdog,
+            3 => Cause::Command,
+            4 => Cause::Panic,
+            5 => Cause::Other,
+            _ => return None,
+        })
+    }
+
+    /// The cause in one word, as `AT+STATS?` prints it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Cause::PowerOn => "power_on",
+            Cause::Watchdog => "watchdog",
+            Cause::Command => "command",
+            Cause::Panic => "panic",
+            Cause::Other => "other",
+        }
+    }
+}
+
+/// What the two scratch words say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HandOver {
+    /// Bootloader to itself: the slot is good, run it.
+    Run(Cause),
+    /// Bootloader to app.
+    Report(Cause),
+    /// App to bootloader.
+    Restart(Cause),
+}
+
+impl HandOver {
+    /// Scratch 2 and scratch 3.
+    pub fn words(self) -> [u32; 2] {
+        let (kind, cause) = match self {
+            HandOver::Run(cause) => (KIND_RUN, cause),
+            HandOver::Report(cause) => (KIND_REPORT, cause),
+            HandOver::Restart(cause) => (KIND_RESTART, cause),
+        };
+        let word = TAG | kind << 8 | cause.code();
+        [word, !word]
+    }
+
+    /// Reads scratch 2 and scratch 3; `None` when they say nothing.
+    pub fn from_words([word, complement]: [u32; 2]) -> Option<HandOver> {
+        if complement != !word || word & 0xFFFF_0000 != TAG {
+            return None;
+        }
+        let cause = Cause::from_code(word & 0xFF)?;
+        match word >> 8 & 0xFF {
+            KIND_RUN => Some(HandOver::Run(cause)),
+            KIND_REPORT => Some(HandOver::Report(cause)),
+            KIND_RESTART => Some(HandOver::Restart(cause)),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    fn all() -> Vec<HandOver> {
+        let causes = [Cause::PowerOn, Cause::Watchdog, Cause::Command, Cause::Panic, Cause::Other];
+        causes
+            .iter()
+            .flat_map(|&cause| [HandOver::Run(cause), HandOver::Report(cause), HandOver::Restart(cause)])
+            .collect()
+    }
+
+    #[test]
+    fn every_hand_over_survives_the_round_trip() {
+        for hand_over in all() {
+            assert_eq!(HandOver::from_words(hand_over.words()), Some(hand_over));
+        }
+    }
+
+    #[test]
+    fn one_flipped_bit_says_nothing() {
+        for hand_over in all() {
+            for bit in 0..64 {
+                let mut words = hand_over.words();
+                words[bit / 32] ^= 1 << (bit % 32);
+                assert_eq!(HandOver::from_words(words), None);
+            }
+        }
+    }
+
+    #[test]
+    fn cleared_and_power_on_words_say_nothing() {
+        for words in [[0, 0], [0, !0], [!0, !0], [!0, 0], [0x5351_0101, 0]] {
+            assert_eq!(HandOver::from_words(words), None);
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! A device in the twin and a conversation with it over its console.
+
+use std::path::PathBuf;
+
+use clap::{Arg, ArgMatches, value_parser};
+use twin::board::Board;
+
+use crate::Failure;
+
+/// Where `cargo xtask fw` puts the image, from the checkout's root.
+const IMAGE: &str = "target/fw/squitter-adsbee_1090.uf2";
+/// How long a command may take to be answered, in milliseconds.
+const ANSWER_MS: u64 = 1_000;
+/// Silence that ends the answer to a query, in milliseconds.
+const SILENCE_MS: u64 = 20;
+
+/// `--image`.
+pub fn image_argument() -> Arg {
+    Arg::new("image")
+        .long("image")
+        .value_name("UF2")
+        .value_parser(value_parser!(PathBuf))
+        .help(format!(
+            "Firmware image to run [default: {IMAGE} of this checkout, built by `cargo xtask fw`]"
+        ))
+}
+
+/// Powers the device of `--image` on and waits until it listens on both sides.
+pub fn start(matches: &ArgMatches) -> Result<Board, Failure> {
+    let image = match matches.get_one::<PathBuf>("image") {
+        Some(path) => path.clone(),
+        None => default_image(),
+    };
+    let mut board = Board::power_on(&image)?;
+    board.wait_for_capture()?;
+    board.wait_for_console()?;
+    Ok(board)
+}
+
+/// The image of the checkout this program was built in, or of the present folder.
+fn default_image() -> PathBuf {
+    let here = PathBuf::from(IMAGE);
+    if here.exists() {
+        return here;
+    }
+    let manifest = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    manifest.parent().map_or(here, |root| root.join(IMAGE))
+}
+
+/// Sends a command and waits for `OK`; an `ERROR` is a failure. Everything the console said meanwhile is returned.
+pub fn command(board: &mut Board, line: &str) -> Result<String, Failure> {
+    board.console_write(format!("{line}\r\n").as_bytes());
+    let mut said = String::new();
+    for _ in 0..ANSWER_MS {
+        board.run_ms(1)?;
+        said.push_str(&String::from_utf8_lossy(&board.console_read()));
+        for answer in said.lines() {
+            if answer.starts_with("ERROR") {
+                return Err(Failure::Refused {
+                    command: line.into(),
+                    answer: answer.into(),
+                });
+            }
+        }
+        if said.contains("OK\r\n") {
+            return Ok(said);
+        }
+    }
+    Err(Failure::Refused {
+        command: line.into(),
+        answer: format!("nothing within {ANSWER_MS} ms ({said:?})"),
+    })
+}
+
+/// Sends a query and returns its lines, which end with silence.
+pub fn query(board: &mut Board, line: &str) -> Result<String, Failure> {
+    board.console_write(format!("{line}\r\n").as_bytes());
+    let mut said = String::new();
+    let mut silent = 0;
+    let mut waited = 0;
+    while waited < ANSWER_MS && (said.is_empty() || silent < SILENCE_MS) {
+        board.run_ms(1)?;
+        waited += 1;
+        let heard = board.console_read();
+        silent = if heard.is_empty() { silent + 1 } else { 0 };
+        said.push_str(&String::from_utf8_lossy(&heard));
+    }
+    Ok(said)
+}
+
+/// The value of `name` in the lines of `AT+STATS?`: the first `name=value` of `stage`.
+pub fn counter(stats: &str, stage: &str, name: &str) -> Option<u64> {
+    let prefix = format!("+STATS={stage},");
+    let line = stats.lines().find_map(|l| l.strip_prefix(&prefix))?;
+    line.split(',')
+        .find_map(|field| field.strip_prefix(name)?.strip_prefix('=')?.parse().ok())
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn counters_are_found_by_stage_and_whole_name() {
+        let stats = "+STATS=DEMOD,words=10,candidates=7\r\n+STATS=QUEUE,offered=3,dropped=0\r\n";
+        assert_eq!(super::counter(stats, "DEMOD", "candidates"), Some(7));
+        assert_eq!(super::counter(stats, "QUEUE", "dropped"), Some(0));
+        assert_eq!(super::counter(stats, "QUEUE", "drop"), None);
+        assert_eq!(super::counter(stats, "USB", "dropped"), None);
+    }
+}

@@ -1,0 +1,148 @@
+//! `squitter replay`: a recording through front end and receiver, by the shipped image or by its demodulator alone.
+
+use std::io::{BufWriter, Write};
+use std::path::PathBuf;
+
+use clap::{Arg, ArgMatches, Command};
+use twin::front_end::PulseSource;
+use twin::native;
+use twin::source::PRE_ROLL_PS;
+
+use crate::beast;
+use crate::output::{self, Form, Heard, Printer};
+use crate::{Failure, device, radio};
+
+/// Rate that carries every frame the channel can hold in Beast.
+const BAUD: u32 = 3_000_000;
+/// The device is left running this long after the recording, so that its last second is reported, in milliseconds.
+const TAIL_MS: u64 = 1_200;
+
+/// The subcommand's arguments.
+pub fn command() -> Command {
+    Command::new("replay")
+        .about("Play a recording through the radio front end into the receiver and print what it hears")
+        .long_about(
+            "Plays FILE through the front end's model (log detector, slicer, comparator) into the receiver. Engine `twin` runs the \
+             firmware image, `native` the same demodulator on this computer; both sample the same instants and print the same frames. \
+             Noise of 5 ms comes before and after. Times are seconds from the recording's first sample to the frame's first edge, by the \
+             device's own 12 MHz stamps. What every stage counted goes to standard error with --stats.",
+        )
+        .arg(radio::file_argument("Recording"))
+        .args(radio::arguments())
+        .arg(
+            Arg::new("engine")
+                .long("engine")
+                .value_name("ENGINE")
+                .value_parser(["twin", "native"])
+                .default_value("twin")
+                .help("twin: the firmware image, emulated; native: its demodulator on this computer"),
+        )
+        .arg(output::argument())
+        .arg(Arg::new("stats").long("stats").action(clap::ArgAction::SetTrue).help("Print the counters of every stage to standard error"))
+        .arg(device::image_argument())
+}
+
+/// Runs it.
+pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
+    let file = matches.get_one::<PathBuf>("file").expect("required");
+    let form = *matches.get_one::<Form>("out").expect("has a default");
+    let source = radio::recording(file, matches)?;
+    let mut printer = Printer::new(BufWriter::new(std::io::stdout().lock()), form);
+    let stats = if matches
+        .get_one::<String>("engine")
+        .is_some_and(|e| e == "native")
+    {
+        by_native(source, &mut printer)?
+    } else {
+        by_twin(source, form, matches, &mut printer)?
+    };
+    printer.finish()?;
+    if matches.get_flag("stats") {
+        eprint!("{stats}");
+    }
+    Ok(())
+}
+
+fn by_native(
+    mut source: Box<dyn PulseSource + Send>,
+    printer: &mut Printer<impl Write>,
+) -> Result<String, Failure> {
+    let start = output::start_count(0, PRE_ROLL_PS);
+    let options = native::Options {
+        trigger_level_mv: Some(twin::board::pwm_level_mv()),
+        ..Default::default()
+    };
+    let mut failed = None;
+    let counters = native::run(source.as_mut(), options, &mut |raw| {
+        let stamp = (raw.arrival + report::beast::STAMP_AFTER_ARRIVAL_TICKS)
+            / report::beast::TICKS_PER_COUNT;
+        let heard = Heard {
+            count: stamp as i64 - start,
+            frame: raw.frame,
+            repaired: raw.repaired,
+        };
+        if failed.is_none() {
+            failed = printer.frame(&heard).err();
+        }
+    });
+    if let Some(error) = failed {
+        return Err(error.into());
+    }
+    let fields: Vec<String> = counters
+        .named()
+        .iter()
+        .map(|(name, n)| format!("{name}={n}"))
+        .collect();
+    Ok(format!("+STATS=DEMOD,{}\n", fields.join(",")))
+}
+
+fn by_twin(
+    source: Box<dyn PulseSource + Send>,
+    form: Form,
+    matches: &ArgMatches,
+    printer: &mut Printer<impl Write>,
+) -> Result<String, Failure> {
+    let mut board = device::start(matches)?;
+    device::command(&mut board, &format!("AT+BAUDRATE=COMMS_UART,{BAUD}"))?;
+    device::command(&mut board, "AT+PROTOCOL=COMMS_UART,BEAST")?;
+    let console = if form == Form::Csbee { "CSBEE" } else { "NONE" };
+    device::command(&mut board, &format!("AT+PROTOCOL=CONSOLE,{console}"))?;
+    board.run_ms(5)?;
+    board.comms_read();
+    board.console_read();
+
+    let playback = board.play(source)?;
+    let start = output::start_count(playback.start_tick, PRE_ROLL_PS);
+    let mut reader = beast::Reader::default();
+    let mut left = TAIL_MS;
+    while left > 0 {
+        board.run_ms(1)?;
+        if board.playback_finished() {
+            left -= 1;
+        }
+        let (comms, said) = (board.comms_read(), board.console_read());
+        match form {
+            Form::Csbee => printer.bytes(&said)?,
+            Form::Beast => printer.bytes(&comms)?,
+            Form::Hex | Form::Json => {
+                for message in reader.read(&comms) {
+                    printer.frame(&Heard {
+                        count: message.stamp as i64 - start,
+                        frame: message.frame,
+                        repaired: 0,
+                    })?;
+                }
+            }
+        }
+    }
+    if form == Form::Csbee {
+        device::command(&mut board, "AT+PROTOCOL=CONSOLE,NONE")?;
+    }
+    let stats = device::query(&mut board, "AT+STATS?")?;
+    for stage in ["QUEUE", "CONSOLE", "COMMS_UART"] {
+        if let Some(n @ 1..) = device::counter(&stats, stage, "dropped") {
+            eprintln!("squitter: the device dropped {n} messages at stage {stage}");
+        }
+    }
+    Ok(stats.replace("\r\n", "\n"))
+}

@@ -1,0 +1,31 @@
+//! For the bootloader: the flash as bytes, and the jump into an image.
+
+use rp2040_hal::pac;
+
+/// Where the flash appears (RP2040 datasheet, 2.2).
+const XIP_BASE: u32 = 0x1000_0000;
+/// The most the QSPI window shows, bytes.
+const XIP_WINDOW: u32 = 16 * 1024 * 1024;
+
+/// `length` bytes of flash from `offset`; empty when they lie beyond the window. Nothing in this firmware writes flash.
+pub fn flash(offset: u32, length: u32) -> &'static [u8] {
+    match offset.checked_add(length) {
+        // SAFETY: inside the XIP window every byte is readable, and nothing writes the flash while this firmware runs.
+        Some(end) if end <= XIP_WINDOW => unsafe {
+            core::slice::from_raw_parts((XIP_BASE + offset) as *const u8, length as usize)
+        },
+        _ => &[],
+    }
+}
+
+/// Enters the image whose vector table is at `vectors`: VTOR, stack pointer, reset vector.
+///
+/// # Safety
+/// `vectors` points to a verified vector table, and the peripherals are as after a reset.
+pub unsafe fn jump(vectors: u32) -> ! {
+    // SAFETY: the caller vouches for the table; interrupts have no enabled source after a reset.
+    unsafe {
+        (*pac::PPB::ptr()).vtor().write(|w| w.bits(vectors));
+        cortex_m::asm::bootload(vectors as *const u32)
+    }
+}

@@ -1,0 +1,146 @@
+//! A ring in SRAM that DMA fills for ever.
+//!
+//! The chip's DMA has no endless mode: a count of 2^32 words at 4 us is 4.8 hours, and then silence. So the end of the count is
+//! made the ordinary case:
+//!
+//! ```text
+//!   channel 0 (data)      PIO0 RX0 ─▶ ring, write address wraps in hardware, 32 words (128 us), raises DMA_IRQ_1
+//!        │ chain                                                   ▲
+//!        ▼                                                         │ trigger
+//!   channel 1 (control)   one word, 32 ─▶ channel 0's AL1_TRANS_COUNT_TRIG
+//! ```
+//! The write address is never rewritten, so it stays the one truth of how far the ring is. Between two blocks the PIO's FIFO
+//! holds the samples: the chain takes tens of cycles, the FIFO lasts 3 840.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+use rp2040_hal::pac;
+
+/// Words a block: one interrupt every 128 us at 4 us a word.
+pub const BLOCK_WORDS: u32 = 32;
+const DATA: usize = 0;
+const CONTROL: usize = 1;
+/// TREQ of PIO0's RX FIFO 0 (RP2040 datasheet, 2.5.3.1).
+const TREQ_PIO0_RX0: u8 = 4;
+/// TREQ "permanent": as fast as possible.
+const TREQ_PERMANENT: u8 = 0x3F;
+
+/// What the control channel writes into the data channel's count. In SRAM, because a DMA read from XIP would stall while flash is erased.
+static BLOCK_RELOAD: AtomicU32 = AtomicU32::new(BLOCK_WORDS);
+
+/// A running ring of `N` words.
+pub struct DmaRing<const N: usize> {
+    dma: pac::DMA,
+    base: u32,
+}
+
+/// The ring's memory does not stand on a multiple of its own size, or its size is no power of two from 2 to 2^13 words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Misplaced;
+
+/// The two DMA channels before they have a ring.
+pub struct DmaChannels {
+    pub(crate) dma: pac::DMA,
+}
+
+impl<const N: usize> DmaRing<N> {
+    /// Points both channels at the ring and arms them: each word the sampler pushes from now on lands in the ring.
+    pub fn arm(channels: DmaChannels, words: &'static [AtomicU32; N]) -> Result<Self, Misplaced> {
+        let base = words.as_ptr() as u32;
+        let bytes = (N * 4) as u32;
+        if !N.is_power_of_two() || !(8..=1 << 15).contains(&bytes) || base % bytes != 0 {
+            return Err(Misplaced);
+        }
+        let dma = channels.dma;
+        // SAFETY: the source is a FIFO register, the target a static ring whose address bits above its size never change
+        // (RING_SIZE, alignment checked above); the words are atomics, so the hardware's writes are no data race.
+        unsafe {
+            let data = dma.ch(DATA);
+            data.ch_read_addr().write(|w| w.bits((*pac::PIO0::ptr()).rxf(0).as_ptr() as u32));
+            data.ch_write_addr().write(|w| w.bits(base));
+            data.ch_trans_count().write(|w| w.bits(BLOCK_WORDS));
+            data.ch_al1_ctrl().write(|w| {
+                w.bits(ctrl(|c| {
+                    c.incr_write = true;
+                    c.ring_size_write = bytes.trailing_zeros();
+                    c.treq = TREQ_PIO0_RX0;
+                    c.chain_to = CONTROL as u32;
+                    c.high_priority = true;
+                }))
+            });
+            let control = dma.ch(CONTROL);
+            control.ch_read_addr().write(|w| w.bits(BLOCK_RELOAD.as_ptr() as u32));
+            control.ch_write_addr().write(|w| w.bits(data.ch_al1_trans_count_trig().as_ptr() as u32));
+            control.ch_trans_count().write(|w| w.bits(1));
+            control.ch_al1_ctrl().write(|w| {
+                w.bits(ctrl(|c| {
+                    c.treq = TREQ_PERMANENT;
+                    c.chain_to = CONTROL as u32;
+                    c.high_priority = true;
+                    c.irq_quiet = true;
+                }))
+            });
+            dma.inte1().write(|w| w.bits(1 << DATA));
+            dma.multi_chan_trigger().write(|w| w.bits(1 << DATA));
+        }
+        Ok(Self { dma, base })
+    }
+
+    /// Index of the word that will be written next.
+    #[inline(always)]
+    pub fn position(&self) -> u32 {
+        (self.dma.ch(DATA).ch_write_addr().read().bits().wrapping_sub(self.base) / 4) & (N as u32 - 1)
+    }
+
+    /// Enables the block interrupt as a wake-up of the calling core, which keeps its interrupts masked.
+    #[inline(always)]
+    pub fn wake_this_core(&self) {
+        // SAFETY: no handler runs, because the caller's interrupts are masked; the line only ends WFI.
+        unsafe { pac::NVIC::unmask(pac::Interrupt::DMA_IRQ_1) };
+    }
+
+    /// Sleeps until a block has completed, and takes its interrupt back. A block that completed before the call returns at once.
+    #[inline(always)]
+    pub fn wait_block(&mut self) {
+        while self.dma.ints1().read().bits() & 1 << DATA == 0 {
+            pac::NVIC::unpend(pac::Interrupt::DMA_IRQ_1);
+            // The line is a level: if the block ended between the read and here, it is pending again and WFI falls through.
+            if self.dma.ints1().read().bits() & 1 << DATA == 0 {
+                cortex_m::asm::wfi();
+            }
+        }
+        // SAFETY: write one to clear, the data channel's bit alone.
+        self.dma.ints1().write(|w| unsafe { w.bits(1 << DATA) });
+        pac::NVIC::unpend(pac::Interrupt::DMA_IRQ_1);
+        // What the DMA wrote before the interrupt is read only after this point.
+        core::sync::atomic::fence(Ordering::Acquire);
+    }
+}
+
+/// Fields of a channel's CTRL register (RP2040 datasheet, 2.5.7: CH0_CTRL_TRIG).
+#[derive(Default)]
+struct Ctrl {
+    high_priority: bool,
+    incr_write: bool,
+    /// log2 of the ring in bytes, applied to write addresses; 0 = no ring.
+    ring_size_write: u32,
+    chain_to: u32,
+    treq: u8,
+    irq_quiet: bool,
+}
+
+fn ctrl(set: impl FnOnce(&mut Ctrl)) -> u32 {
+    let mut fields = Ctrl::default();
+    set(&mut fields);
+    const ENABLE: u32 = 1;
+    const SIZE_WORD: u32 = 2 << 2;
+    const RING_SEL_WRITE: u32 = 1 << 10;
+    let ring = if fields.ring_size_write == 0 { 0 } else { fields.ring_size_write << 6 | RING_SEL_WRITE };
+    ENABLE
+        | SIZE_WORD
+        | u32::from(fields.high_priority) << 1
+        | u32::from(fields.incr_write) << 5
+        | ring
+        | fields.chain_to << 11
+        | u32::from(fields.treq) << 15
+        | u32::from(fields.irq_quiet) << 21
+}

@@ -1,0 +1,113 @@
+//! Everything brought up once, in the order the chip wants it.
+//!
+//! ```text
+//!   crystal ─ PLL_SYS 120 MHz, PLL_USB 48 MHz ─ clk_sys, clk_peri = PLL_SYS; clk_usb = PLL_USB; clk_ref = crystal
+//!   watchdog tick 1 MHz ─ TIMER, DMA, PIO0, UART1, PWM out of reset ─ pins by net name ─ ports
+//! ```
+
+use crate::board::adsbee_1090::{self, PULSES_GPIO, Pins, TriggerLevelSlice};
+use crate::core1::Core1;
+use crate::dma_ring::DmaChannels;
+use crate::pio_sampler::PioSampler;
+use crate::uart::CommsUart;
+use crate::usb::UsbConsole;
+use crate::watchdog::Watchdog;
+use rp2040_hal::clocks::{ClocksManager, UsbClock};
+use rp2040_hal::fugit::HertzU32;
+use rp2040_hal::pll::{PLLConfig, common_configs::PLL_USB_48MHZ, setup_pll_blocking};
+use rp2040_hal::pwm::{self, FreeRunning};
+use rp2040_hal::usb::UsbBus;
+use rp2040_hal::{Sio, gpio, pac, xosc::setup_xosc_blocking};
+
+/// COMMS_UART's rate before any setting, bits a second.
+pub const COMMS_BAUD: u32 = 115_200;
+
+/// VCO 1200 MHz / 5 / 2 = 120 MHz.
+const PLL_SYS_120MHZ: PLLConfig =
+    PLLConfig { vco_freq: HertzU32::MHz(1200), refdiv: 1, post_div1: 5, post_div2: 2 };
+
+/// Counts a period of the trigger level's PWM: 120 MHz / 5000 = 24 kHz.
+pub const TRIGGER_LEVEL_PERIOD: u16 = 5000;
+
+/// The trigger level's PWM channel.
+pub type TriggerLevelPwm = pwm::Channel<pwm::Slice<TriggerLevelSlice, FreeRunning>, pwm::B>;
+
+/// Starts the trigger level's PWM: `counts` system cycles a period, duty 0.
+fn trigger_level_pwm(mut slice: pwm::Slice<TriggerLevelSlice, FreeRunning>, counts: u16) -> TriggerLevelPwm {
+    slice.set_top(counts.saturating_sub(1));
+    slice.enable();
+    slice.channel_b
+}
+
+/// USB before the host sees it.
+pub struct UsbParts {
+    bus: UsbBus,
+}
+
+impl UsbParts {
+    /// Shows the device to the host.
+    pub fn attach(self) -> Option<UsbConsole> {
+        UsbConsole::new(self.bus)
+    }
+}
+
+/// What the chip and the board offer, each once.
+pub struct Parts {
+    /// Pins by net name that a driver takes; the rest are wired already.
+    pub led: adsbee_1090::Led,
+    /// Trigger level PWM, running at duty 0.
+    pub trigger_level: TriggerLevelPwm,
+    /// PULSES sampler, stopped.
+    pub sampler: PioSampler,
+    /// Two DMA channels for its ring.
+    pub dma: DmaChannels,
+    /// COMMS_UART, running at [`COMMS_BAUD`].
+    pub comms_uart: CommsUart,
+    /// USB, not yet shown to the host.
+    pub usb: UsbParts,
+    /// The watchdog, not started.
+    pub watchdog: Watchdog,
+    /// The second core, in its ROM.
+    pub core1: Core1,
+}
+
+impl Parts {
+    /// Brings chip and board up. `None` the second time, or when the crystal or a PLL does not come up as asked.
+    pub fn take() -> Option<Self> {
+        let p = pac::Peripherals::take()?;
+        let mut resets = p.RESETS;
+        let mut watchdog = rp2040_hal::Watchdog::new(p.WATCHDOG);
+        watchdog.enable_tick_generation((crate::CRYSTAL_HZ / 1_000_000) as u8);
+
+        let xosc = setup_xosc_blocking(p.XOSC, HertzU32::Hz(crate::CRYSTAL_HZ)).ok()?;
+        let mut clocks = ClocksManager::new(p.CLOCKS);
+        let pll_sys =
+            setup_pll_blocking(p.PLL_SYS, xosc.operating_frequency(), PLL_SYS_120MHZ, &mut clocks, &mut resets).ok()?;
+        let pll_usb =
+            setup_pll_blocking(p.PLL_USB, xosc.operating_frequency(), PLL_USB_48MHZ, &mut clocks, &mut resets).ok()?;
+        clocks.init_default(&xosc, &pll_sys, &pll_usb).ok()?;
+
+        resets.reset().modify(|_, w| w.timer().clear_bit().dma().clear_bit().pio0().clear_bit().uart1().clear_bit());
+        while {
+            let done = resets.reset_done().read();
+            done.timer().bit_is_clear() || done.dma().bit_is_clear() || done.pio0().bit_is_clear() || done.uart1().bit_is_clear()
+        } {}
+
+        let sio = Sio::new(p.SIO);
+        let pins = Pins::new(gpio::Pins::new(p.IO_BANK0, p.PADS_BANK0, sio.gpio_bank0, &mut resets));
+        let slices = pwm::Slices::new(p.PWM, &mut resets);
+        let usb_clock: UsbClock = clocks.usb_clock;
+        let bus = UsbBus::new(p.USBCTRL_REGS, p.USBCTRL_DPRAM, usb_clock, true, &mut resets);
+
+        Some(Self {
+            led: pins.led,
+            trigger_level: trigger_level_pwm(slices.pwm4, TRIGGER_LEVEL_PERIOD),
+            sampler: PioSampler::new(p.PIO0, PULSES_GPIO),
+            dma: DmaChannels { dma: p.DMA },
+            comms_uart: CommsUart::new(p.UART1, COMMS_BAUD),
+            usb: UsbParts { bus },
+            watchdog: Watchdog::new(watchdog),
+            core1: Core1 { psm: p.PSM, fifo: sio.fifo },
+        })
+    }
+}

@@ -1,0 +1,314 @@
+//! The demodulator: walks the ring word by word, tries what the gate lets through, and emits each transmission once.
+//!
+//! ```text
+//!   word n ─ gate ─ phases ─ for each, oldest first:
+//!        inside an accepted frame, or tried already ──────────────► superseded
+//!        too many mismatches with a preamble ───────────────────────────────────► rejected_by_score
+//!        demodulated at the phase and its neighbours:
+//!            the first 16 bits are no bits ───────────────────────► no_bits
+//!            no such DF ──────────────────────────────────────────► bad_format
+//!            DF11 17 18 19, residual not 0 ───────────────────────► bad_parity
+//!            DF11 with code, or address parity, address not heard ► unknown_address
+//!            the same, heard, but its bits hang by a thread ──────► unsure
+//!            else ────────────────────────────────────────────────► RawFrame; go on behind it
+//! ```
+//! Every phase of a candidate is tested as it is. An exact frame ends the search; a frame that a known address vouches for waits until all phases
+//! were seen, because an exact one is worth more.
+//!
+//! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 132 µs.
+
+use crate::bits;
+use crate::counters::{Counters, add};
+use crate::gate::gate;
+use crate::heard::Heard;
+use crate::ring::{Aligned, RING_WORDS, SampleRing};
+use crate::score::{MOST_MISMATCHES, mismatches};
+use crate::{SAMPLES_PER_WORD, TICKS_PER_SAMPLE};
+use mode_s::Frame;
+use mode_s::crc24;
+use mode_s::frame::{LONG_BYTES, SHORT_BYTES};
+use mode_s::parity::HIGHEST_INTERROGATOR_CODE;
+
+/// Words that must follow a word before it is looked at: 64 + 896 samples of a long frame, its start anywhere in the word, two phases more.
+pub const LOOKAHEAD_WORDS: u32 = 33;
+
+/// Words the writer may be ahead before the oldest are given up. The rest of the ring is what the writer may fill while a call works off this backlog.
+const MOST_BEHIND: u64 = RING_WORDS as u64 * 3 / 4;
+
+/// Samples from the preamble's start to the first bit: 8 µs.
+const PREAMBLE_SAMPLES: u32 = 64;
+/// Samples a bit.
+const BIT_SAMPLES: u32 = 8;
+
+/// Least certainty of the first 16 bits, of 64, below which there is nothing to demodulate. Noise has a mean of 18 and exceeds 23 one time in
+/// ten; one true frame in a hundred of the recordings has less than 26.
+const LEAST_CERTAINTY: u32 = 22;
+
+/// Least mean certainty of a bit, in quarters of a sample count (4 would be every sample of both halves right), of a frame whose only proof is
+/// a known address. Noise has a mean near 1.1.
+const LEAST_CERTAINTY_QUARTERS: u32 = 7;
+
+/// Phases tried around a candidate, nearest first.
+const PHASES: [i32; 4] = [0, 1, -1, 2];
+
+/// A frame whose parity fits, and when it came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RawFrame {
+    /// The bits as received.
+    pub frame: Frame,
+    /// Tick (120 MHz) of the leading edge of the preamble's first pulse, from the first capture sample.
+    pub arrival: u64,
+    /// Bits repaired; none so far.
+    pub repaired: u8,
+    /// Signal level in a hundredth of a dBm; not measured so far.
+    pub level: Option<i16>,
+}
+
+/// What one phase of a candidate gave. In rising order of worth: the best one is a candidate's outcome.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Outcome {
+    NoBits,
+    BadFormat,
+    BadParity,
+    UnknownAddress,
+    Unsure,
+    Address,
+    Interrogator,
+    Exact,
+}
+
+/// The state between calls.
+pub struct Demodulator {
+    /// The next word to gate, from the start of capture.
+    next: u64,
+    /// First sample (from the start of capture) that is not behind an accepted frame or a tried candidate.
+    free_from: u64,
+    heard: Heard,
+}
+
+impl Demodulator {
+    /// Nothing heard, at the start of capture.
+    pub const fn new() -> Self {
+        Self {
+            next: 0,
+            free_from: 0,
+            heard: Heard::new(),
+        }
+    }
+
+    /// Works off the ring up to `written` words since the start of capture, and gives each accepted frame to `sink`.
+    #[inline]
+    pub fn run(
+        &mut self,
+        ring: &SampleRing,
+        written: u64,
+        counters: &Counters,
+        sink: &mut impl FnMut(RawFrame),
+    ) {
+        if written.saturating_sub(self.next) > MOST_BEHIND {
+            self.skip(written, counters);
+        }
+        self.heard.at_word(self.next);
+        while let Some(hits) = self.find(ring, written, counters) {
+            if let Some(frame) = self.examine(ring, hits, counters) {
+                sink(frame);
+            }
+        }
+    }
+
+    /// The ring was lapped: gives up the oldest half of the ring.
+    #[inline(never)]
+    fn skip(&mut self, written: u64, counters: &Counters) {
+        let from = written - RING_WORDS as u64 / 2;
+        add(&counters.overruns, 1);
+        add(&counters.overrun_words, (from - self.next) as u32);
+        self.next = from;
+    }
+
+    /// Gates words until one has a hit, or no more can be looked at. The word with the hit is `self.next`.
+    #[inline(never)]
+    fn find(&mut self, ring: &SampleRing, written: u64, counters: &Counters) -> Option<u32> {
+        let ready = written.saturating_sub(self.next + u64::from(LOOKAHEAD_WORDS)) as u32;
+        let first = self.next as u32;
+        let end = first.wrapping_add(ready);
+        let mut index = first;
+        let mut a = ring.word(index);
+        let mut b = ring.word(index.wrapping_add(1));
+        let mut found = None;
+        while index != end {
+            let c = ring.word(index.wrapping_add(2));
+            let hits = gate(a, b, c);
+            if hits != 0 {
+                found = Some(hits);
+                break;
+            }
+            index = index.wrapping_add(1);
+            a = b;
+            b = c;
+        }
+        let passed = index.wrapping_sub(first);
+        self.next += u64::from(passed);
+        add(&counters.words, passed);
+        found
+    }
+
+    /// Tries the hits of the word `self.next` until one is a frame, and steps on.
+    #[inline(never)]
+    fn examine(&mut self, ring: &SampleRing, hits: u32, counters: &Counters) -> Option<RawFrame> {
+        let word = self.next;
+        let start = word * u64::from(SAMPLES_PER_WORD);
+        let mut rest = hits;
+        let mut accepted = None;
+        add(&counters.candidates, hits.count_ones());
+        while rest != 0 {
+            let sample = rest.leading_zeros();
+            rest &= !(0x8000_0000 >> sample);
+            if start + u64::from(sample) < self.free_from {
+                add(&counters.superseded, 1);
+                continue;
+            }
+            let Some((outcome, phase, bytes)) = try_phases(ring, word as u32, sample, &self.heard)
+            else {
+                add(&counters.rejected_by_score, 1);
+                continue;
+            };
+            add(&counters.demodulated, 1);
+            // The neighbours were tried with it.
+            self.free_from = start + u64::from(sample) + 2;
+            add(
+                match outcome {
+                    Outcome::NoBits => &counters.no_bits,
+                    Outcome::BadFormat => &counters.bad_format,
+                    Outcome::BadParity => &counters.bad_parity,
+                    Outcome::UnknownAddress => &counters.unknown_address,
+                    Outcome::Unsure => &counters.unsure,
+                    Outcome::Address => &counters.accepted_address,
+                    Outcome::Interrogator => &counters.accepted_interrogator,
+                    Outcome::Exact => &counters.accepted_exact,
+                },
+                1,
+            );
+            if outcome < Outcome::Address {
+                continue;
+            }
+            let Ok(frame) = Frame::from_bytes(received(&bytes)) else {
+                continue;
+            };
+            if let (Outcome::Exact, Some(mode_s::Address::Icao(icao))) =
+                (outcome, mode_s::Parity::of(&frame).address())
+            {
+                self.heard.note(icao.0);
+            }
+            let first = (start + u64::from(sample)).saturating_add_signed(i64::from(phase));
+            let bits = received(&bytes).len() as u32 * 8;
+            self.free_from = first + u64::from(PREAMBLE_SAMPLES + BIT_SAMPLES * bits);
+            accepted = Some(RawFrame {
+                frame,
+                arrival: first * TICKS_PER_SAMPLE,
+                repaired: 0,
+                level: None,
+            });
+        }
+        // Words wholly inside an accepted frame need no gate.
+        let behind = (self.free_from / u64::from(SAMPLES_PER_WORD)).max(word + 1);
+        add(&counters.words, (behind - word) as u32);
+        self.next = behind;
+        accepted
+    }
+}
+
+impl Default for Demodulator {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The bytes that the downlink format says were sent.
+fn received(bytes: &[u8; LONG_BYTES]) -> &[u8] {
+    if bytes[0] & 0x80 != 0 {
+        bytes
+    } else {
+        bytes.first_chunk::<SHORT_BYTES>().map_or(bytes, |b| b)
+    }
+}
+
+/// The best that a candidate and its neighbours give: outcome, phase, bytes. `None` when no phase looks like a preamble.
+fn try_phases(
+    ring: &SampleRing,
+    word: u32,
+    sample: u32,
+    heard: &Heard,
+) -> Option<(Outcome, i32, [u8; LONG_BYTES])> {
+    let mut best: Option<(Outcome, i32, [u8; LONG_BYTES])> = None;
+    for phase in PHASES {
+        // One word back, so that the phase before sample 0 is no special case.
+        let at = sample
+            .wrapping_add(SAMPLES_PER_WORD)
+            .wrapping_add_signed(phase);
+        let mut samples = Aligned::new(ring, word.wrapping_sub(1), at);
+        let first = samples.take();
+        let second = samples.take();
+        if mismatches(first, second) > MOST_MISMATCHES {
+            continue;
+        }
+        let (outcome, bytes) = demodulate(&mut samples, heard);
+        if best.is_none_or(|(so_far, ..)| outcome > so_far) {
+            best = Some((outcome, phase, bytes));
+        }
+        if outcome == Outcome::Exact {
+            break;
+        }
+    }
+    best
+}
+
+/// Demodulates one phase and judges it. `samples` stands at the first bit.
+#[inline(never)]
+fn demodulate(samples: &mut Aligned, heard: &Heard) -> (Outcome, [u8; LONG_BYTES]) {
+    let from = *samples;
+    let mut bytes = [0; LONG_BYTES];
+    let (first, sure_of_first) = bits::byte_and_certainty(samples);
+    let (second, sure_of_second) = bits::byte_and_certainty(samples);
+    if sure_of_first + sure_of_second < LEAST_CERTAINTY {
+        return (Outcome::NoBits, bytes);
+    }
+    // DF 0, 4, 5, 11, 16 to 21 and 24 to 31 exist.
+    const FORMATS: u32 = 0xFF3F_0831;
+    if FORMATS >> (first >> 3) & 1 == 0 {
+        return (Outcome::BadFormat, bytes);
+    }
+    let length = if first & 0x80 != 0 {
+        LONG_BYTES
+    } else {
+        SHORT_BYTES
+    };
+    for byte in bytes.iter_mut().take(length).skip(2) {
+        *byte = bits::byte(samples);
+    }
+    bytes[0] = first;
+    bytes[1] = second;
+    let residual = crc24::residual(received(&bytes));
+    let (vouched, by) = match first >> 3 {
+        17..=19 if residual == 0 => return (Outcome::Exact, bytes),
+        17..=19 => return (Outcome::BadParity, bytes),
+        11 => match residual {
+            0 => return (Outcome::Exact, bytes),
+            1..=HIGHEST_INTERROGATOR_CODE => (
+                u32::from_be_bytes([0, bytes[1], bytes[2], bytes[3]]),
+                Outcome::Interrogator,
+            ),
+            _ => return (Outcome::BadParity, bytes),
+        },
+        _ => (residual, Outcome::Address),
+    };
+    if !heard.knows(vouched) {
+        return (Outcome::UnknownAddress, bytes);
+    }
+    let mut again = from;
+    let words = length as u32 * 2;
+    let certainty: u32 = (0..words).map(|_| bits::certainty(again.take())).sum();
+    if certainty < words * LEAST_CERTAINTY_QUARTERS {
+        return (Outcome::Unsure, bytes);
+    }
+    (by, bytes)
+}

@@ -1,0 +1,79 @@
+//! The 24-bit address of a frame's sender, and whether it is one that ICAO gave out.
+//!
+//! DF18 also carries addresses that are none: anonymous ones, track numbers of TIS-B ground stations. They share the 24 bits, so
+//! only their kind keeps them from being taken for the aircraft that owns the number. CF says it, for CF 2 and 6 with the help of
+//! one bit (IMF) inside ME.
+//!
+//! | CF | content | address |
+//! |---|---|---|
+//! | 0 | ADS-B of a device that is no transponder | ICAO |
+//! | 1 | the same | anonymous, vehicle or obstacle |
+//! | 2 | fine TIS-B | ICAO, or a track number where IMF = 1 |
+//! | 3 | coarse TIS-B | ICAO, or a track number where IMF (ME bit 1) = 1 |
+//! | 4 | TIS-B management | none of use: not ICAO |
+//! | 5 | fine TIS-B | not ICAO |
+//! | 6 | ADS-R | ICAO, or not where IMF = 1 |
+//! | 7 | reserved | not ICAO |
+//!
+//! Source: DO-260B 2.2.3.2.1.3 and 2.2.17 as told by Doc 9871, tables of CF and IMF.
+
+use crate::frame::Frame;
+
+/// A 24-bit aircraft address of ICAO.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Icao(pub u32);
+
+/// The sender named by a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Address {
+    /// An address that ICAO gave out.
+    Icao(Icao),
+    /// 24 bits that are no ICAO address: anonymous, or a ground station's track number.
+    NonIcao(u32),
+}
+
+impl Address {
+    /// The 24 bits, whatever their kind.
+    pub const fn bits(self) -> u32 {
+        match self {
+            Address::Icao(Icao(bits)) | Address::NonIcao(bits) => bits,
+        }
+    }
+
+    /// Whether ICAO gave the address out.
+    pub const fn is_icao(self) -> bool {
+        matches!(self, Address::Icao(_))
+    }
+
+    /// The address in bits 9-32 of a DF11, DF17 or DF18 frame.
+    pub(crate) fn of_aa(frame: &Frame) -> Address {
+        let aa = frame.bits(9, 32);
+        if frame.df() == crate::Df::NON_TRANSPONDER && !cf_names_icao(frame) {
+            Address::NonIcao(aa)
+        } else {
+            Address::Icao(Icao(aa))
+        }
+    }
+}
+
+/// Whether AA of a DF18 frame is an ICAO address.
+fn cf_names_icao(frame: &Frame) -> bool {
+    match frame.bits(6, 8) {
+        0 => true,
+        2 | 6 => !imf(frame),
+        3 => !frame.me().bit(1),
+        _ => false,
+    }
+}
+
+/// The IMF bit of a CF 2 or 6 frame; each ME type keeps it elsewhere, identification has none.
+fn imf(frame: &Frame) -> bool {
+    let me = frame.me();
+    match me.bits(1, 5) {
+        0 | 9..=18 | 20..=22 => me.bit(8),
+        5..=8 => me.bit(21),
+        19 => me.bit(9),
+        31 => me.bit(56),
+        _ => false,
+    }
+}

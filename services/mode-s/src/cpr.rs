@@ -1,0 +1,182 @@
+//! Compact position reporting: 17 bits each of latitude and longitude, and the way back to degrees.
+//!
+//! The globe is cut into 60 (even) or 59 (odd) latitude zones; a message gives only the place inside a zone. An even and an odd
+//! message of one place together tell the zones ("global"); a place known to be near tells them alone ("local"). On the surface the
+//! zones are four times smaller, so a global pair leaves one of two latitudes and one of four longitudes, and the nearest to a
+//! reference holds.
+//!
+//! All arithmetic is exact in `i64` and is rounded once, to 1e-7 degrees (11 mm). A CPR quantum is 4.6e-5 degrees of latitude in
+//! the air (5.1 m), a quarter of it on the surface.
+//!
+//! Range of the local way: within half a zone of the reference, so 180 NM in the air and 45 NM on the surface.
+//! Source: DO-260B A.1.7 (the equations), Doc 9871 C.2.6.
+
+use crate::nl::nl;
+
+/// Bits of a CPR coordinate.
+const BITS: u32 = 17;
+/// Steps inside a zone.
+const STEPS: i64 = 1 << BITS;
+/// 360° in 1e-7 degrees.
+const TURN: i64 = 3_600_000_000;
+/// 90° in 1e-7 degrees.
+const QUARTER_TURN: i64 = TURN / 4;
+
+/// A place: degrees × 1e7, north and east positive, longitude in [-180°, 180°).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Position {
+    /// Latitude in 1e-7 degrees.
+    pub latitude: i32,
+    /// Longitude in 1e-7 degrees.
+    pub longitude: i32,
+}
+
+/// Even or odd: which zones the message used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CprFormat {
+    /// F = 0: 60 latitude zones.
+    Even,
+    /// F = 1: 59 latitude zones.
+    Odd,
+}
+
+/// Size of the zones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CprKind {
+    /// Zones of about 6°.
+    Airborne,
+    /// Zones of about 1.5°.
+    Surface,
+}
+
+/// The encoded position of one message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cpr {
+    /// Zone size.
+    pub kind: CprKind,
+    /// Even or odd.
+    pub format: CprFormat,
+    /// YZ, 17 bits.
+    pub latitude: u32,
+    /// XZ, 17 bits.
+    pub longitude: u32,
+}
+
+impl CprKind {
+    /// What 60 even latitude zones span, 1e-7 degrees.
+    const fn span(self) -> i64 {
+        match self {
+            CprKind::Airborne => TURN,
+            CprKind::Surface => QUARTER_TURN,
+        }
+    }
+}
+
+impl CprFormat {
+    /// The i of the equations.
+    const fn index(self) -> i64 {
+        match self {
+            CprFormat::Even => 0,
+            CprFormat::Odd => 1,
+        }
+    }
+}
+
+/// Place of `latest` from an even and an odd message of one kind, in either order.
+///
+/// `None` where the two are not one of each, lie in different longitude zone counts (the aircraft crossed a step of NL between
+/// them) or give no latitude; and for surface messages without a reference.
+pub fn global(previous: Cpr, latest: Cpr, reference: Option<Position>) -> Option<Position> {
+    let (even, odd) = match (previous.format, latest.format) {
+        (CprFormat::Even, CprFormat::Odd) => (previous, latest),
+        (CprFormat::Odd, CprFormat::Even) => (latest, previous),
+        _ => return None,
+    };
+    if even.kind != odd.kind {
+        return None;
+    }
+    let kind = latest.kind;
+    let reference = match kind {
+        CprKind::Airborne => None,
+        CprKind::Surface => Some(reference?),
+    };
+
+    let zone = (59 * i64::from(even.latitude) - 60 * i64::from(odd.latitude) + STEPS / 2) >> BITS;
+    let south_or_north = |cpr: Cpr| {
+        let zones = 60 - cpr.format.index();
+        let angle = place(kind.span(), zones, zone.rem_euclid(zones), cpr.latitude);
+        match reference {
+            None if angle >= 3 * QUARTER_TURN => angle - TURN,
+            None => angle,
+            Some(near) => nearest_quarter(angle, near.latitude),
+        }
+    };
+    let even_latitude = checked_latitude(south_or_north(even))?;
+    let odd_latitude = checked_latitude(south_or_north(odd))?;
+    let zones = nl(even_latitude);
+    if zones != nl(odd_latitude) {
+        return None;
+    }
+    let latitude = match latest.format {
+        CprFormat::Even => even_latitude,
+        CprFormat::Odd => odd_latitude,
+    };
+
+    let nl = i64::from(zones);
+    let zone =
+        (i64::from(even.longitude) * (nl - 1) - i64::from(odd.longitude) * nl + STEPS / 2) >> BITS;
+    let zones = (nl - latest.format.index()).max(1);
+    let mut longitude = place(kind.span(), zones, zone.rem_euclid(zones), latest.longitude);
+    if let Some(near) = reference {
+        longitude = nearest_quarter(longitude, near.longitude);
+    }
+    Some(Position {
+        latitude,
+        longitude: wrapped_longitude(longitude),
+    })
+}
+
+/// Place of a message known to lie within half a zone of `near`. `None` where it gives no latitude.
+pub fn local(cpr: Cpr, near: Position) -> Option<Position> {
+    let span = cpr.kind.span();
+    let zones = 60 - cpr.format.index();
+    let latitude = nearest(span, zones, cpr.latitude, i64::from(near.latitude));
+    let latitude = checked_latitude(latitude)?;
+    let zones = (i64::from(nl(latitude)) - cpr.format.index()).max(1);
+    let longitude = nearest(span, zones, cpr.longitude, i64::from(near.longitude));
+    Some(Position {
+        latitude,
+        longitude: wrapped_longitude(longitude),
+    })
+}
+
+/// Of the solutions 90° apart that a surface pair leaves, the nearest to `near`.
+fn nearest_quarter(angle: i64, near: i32) -> i64 {
+    let away = angle - i64::from(near) + QUARTER_TURN / 2;
+    angle - away.div_euclid(QUARTER_TURN) * QUARTER_TURN
+}
+
+/// Angle at `steps` inside zone number `zone` of `zones` zones that span `span`, rounded to nearest.
+fn place(span: i64, zones: i64, zone: i64, steps: u32) -> i64 {
+    let whole = zones << BITS;
+    (span * ((zone << BITS) + i64::from(steps)) + whole / 2).div_euclid(whole)
+}
+
+/// The same in the zone that puts it nearest to `near`.
+fn nearest(span: i64, zones: i64, steps: u32, near: i64) -> i64 {
+    let away = ((near * zones) << BITS) - span * i64::from(steps) + (span << (BITS - 1));
+    let zone = away.div_euclid(span << BITS);
+    place(span, zones, zone, steps)
+}
+
+fn checked_latitude(latitude: i64) -> Option<i32> {
+    (latitude.abs() <= QUARTER_TURN).then_some(latitude as i32)
+}
+
+fn wrapped_longitude(longitude: i64) -> i32 {
+    ((longitude + TURN / 2).rem_euclid(TURN) - TURN / 2) as i32
+}
+
+#[cfg(test)]
+#[path = "cpr_tests.rs"]
+mod tests;

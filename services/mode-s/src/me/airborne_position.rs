@@ -1,0 +1,104 @@
+//! Airborne position (TC 9-18 and 20-22, BDS 0,5): altitude and one half of a CPR pair.
+//!
+//! ```text
+//!   1    6  8 9        21 22 23          40          56
+//!   | TC |SS|B| altitude|T |F | CPR lat  | CPR lon    |
+//! ```
+//! TC 9-18 carry barometric altitude, TC 20-22 the GNSS height above the ellipsoid in the same 12-bit code. TC also tells how far
+//! the position can be wrong. Source: DO-260B 2.2.3.2.3; NIC from its table 2-14 with the supplements taken as 0, which gives the
+//! lower of the possible values.
+
+use crate::altitude::{Ac12, AltitudeFt};
+use crate::cpr::{Cpr, CprFormat, CprKind};
+use crate::frame::MeBits;
+
+/// Which altitude a position carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AltitudeSource {
+    /// Pressure altitude (TC 9-18).
+    Barometric,
+    /// Height above the WGS-84 ellipsoid (TC 20-22).
+    Gnss,
+}
+
+/// The altitude of a position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PositionAltitude {
+    /// Which altitude it is.
+    pub source: AltitudeSource,
+    /// Its value.
+    pub altitude: AltitudeFt,
+}
+
+/// TC 9-18, 20-22.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AirbornePosition {
+    /// TC 9-18 or 20-22.
+    pub type_code: u8,
+    /// SS: 0 nothing, 1 permanent alert, 2 temporary alert, 3 SPI.
+    pub surveillance_status: u8,
+    /// The altitude, where the field holds one.
+    pub altitude: Option<PositionAltitude>,
+    /// T: the time of applicability is a UTC epoch.
+    pub utc_synchronised: bool,
+    /// The encoded position; `None` where the sender had none (all bits 0).
+    pub cpr: Option<Cpr>,
+    /// NIC, 0-11: the least that TC allows.
+    pub nic: u8,
+}
+
+impl AirbornePosition {
+    /// Decodes an ME field of TC 9-18 or 20-22.
+    pub fn decode(me: MeBits) -> AirbornePosition {
+        let type_code = me.bits(1, 5) as u8;
+        let source = if type_code < 20 {
+            AltitudeSource::Barometric
+        } else {
+            AltitudeSource::Gnss
+        };
+        AirbornePosition {
+            type_code,
+            surveillance_status: me.bits(6, 7) as u8,
+            altitude: Ac12(me.bits(9, 20) as u16)
+                .altitude()
+                .map(|altitude| PositionAltitude { source, altitude }),
+            utc_synchronised: me.bit(21),
+            cpr: cpr(me, CprKind::Airborne),
+            nic: nic(type_code),
+        }
+    }
+}
+
+/// The encoded position that airborne and surface messages share, bits 22-56.
+pub(super) fn cpr(me: MeBits, kind: CprKind) -> Option<Cpr> {
+    let latitude = me.bits(23, 39);
+    let longitude = me.bits(40, 56);
+    let format = if me.bit(22) {
+        CprFormat::Odd
+    } else {
+        CprFormat::Even
+    };
+    // A sender without position sends zeros; a true 0,0 of an even zone's corner is one place in 2^34.
+    (latitude != 0 || longitude != 0).then_some(Cpr {
+        kind,
+        format,
+        latitude,
+        longitude,
+    })
+}
+
+/// NIC of an airborne type code with the supplements 0.
+const fn nic(type_code: u8) -> u8 {
+    match type_code {
+        9 | 20 => 11,
+        10 | 21 => 10,
+        11 => 8,
+        12 => 7,
+        13 => 6,
+        14 => 5,
+        15 => 4,
+        16 => 2,
+        17 => 1,
+        _ => 0,
+    }
+}

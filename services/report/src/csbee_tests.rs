@@ -1,0 +1,185 @@
+//! Lines built from published frames, and the CRC against its vector and the document's own algorithm.
+
+use super::*;
+use mode_s::{Frame, Message};
+use std::string::String;
+use std::vec::Vec;
+use tracker::Tracker;
+
+fn message(hex: &str) -> Message {
+    let bytes: Vec<u8> = (0..hex.len() / 2)
+        .map(|i| u8::from_str_radix(&hex[2 * i..2 * i + 2], 16).unwrap())
+        .collect();
+    Message::decode(&Frame::from_bytes(&bytes).unwrap())
+}
+
+/// The only aircraft's line, after one second with these messages, without CRC and line end.
+fn line_after(messages: &[&str]) -> String {
+    let mut tracker = Tracker::<4>::new();
+    for (index, hex) in messages.iter().enumerate() {
+        tracker.on_frame(&message(hex), 10 * index as u64);
+    }
+    tracker.each_second(1000);
+    let mut out = [0; MAX_LINE];
+    let only = tracker.aircraft().next().unwrap();
+    let length = aircraft(only, 1000, &mut out).unwrap();
+    checked(&out[..length])
+}
+
+/// A line's text up to and including the last comma, once its CRC and end are right.
+fn checked(line: &[u8]) -> String {
+    let text = std::str::from_utf8(line).unwrap();
+    let comma = text.rfind(',').unwrap();
+    let (body, rest) = text.split_at(comma + 1);
+    assert_eq!(
+        rest,
+        std::format!("{:04X}\r\n", crc_of_the_document(body.as_bytes()))
+    );
+    body.into()
+}
+
+/// The document's algorithm in its own steps, written again here as the judge of the catalogue's CRC.
+fn crc_of_the_document(bytes: &[u8]) -> u16 {
+    let mut crc: u16 = 0xFFFF;
+    for &byte in bytes {
+        let mut x = (crc >> 8) as u8 ^ byte;
+        x ^= x >> 4;
+        let x = u16::from(x);
+        crc = (crc << 8) ^ (x << 12) ^ (x << 5) ^ x;
+    }
+    crc.swap_bytes()
+}
+
+#[test]
+fn crc_vector_is_printed_swapped() {
+    assert_eq!(CRC.checksum(b"123456789"), 0x29B1);
+    assert_eq!(CRC.checksum(b"123456789").swap_bytes(), 0xB129);
+    assert_eq!(crc_of_the_document(b"123456789"), 0xB129);
+}
+
+#[test]
+fn an_aircraft_known_by_address_alone_has_empty_fields() {
+    // FLAGS: airborne, by CA of the all-call reply.
+    assert_eq!(
+        line_after(&["5D4B18FFFC710B"]),
+        "#A:4B18FF,1,,,,,,,,,,,,,,1,,"
+    );
+}
+
+#[test]
+fn eighteen_fields() {
+    let line = line_after(&["5D4B18FFFC710B"]);
+    // CRC is the eighteenth.
+    assert_eq!(line.split(',').count(), 18);
+}
+
+#[test]
+fn velocity_fields_are_whole_numbers_and_their_update_bits_are_set() {
+    // 182.88°, 159 kt, -832 ft a minute; NACv 0. FLAGS: airborne and bits 20, 21, 22.
+    assert_eq!(
+        line_after(&["8D485020994409940838175B284F"]),
+        "#A:485020,700001,,,,,,,,183,159,-832,,,,1,0,"
+    );
+}
+
+#[test]
+fn callsign_and_category() {
+    // KLM1023, set A without a category.
+    assert_eq!(
+        line_after(&["8D4840D6202CC371C32CE0576098"]),
+        "#A:4840D6,1,KLM1023,,2,,,,,,,,,,,1,,"
+    );
+}
+
+#[test]
+fn position_appears_after_two_pairs_with_five_decimals() {
+    let pair = [
+        "8da6147f5859f18cdf4d244ac6fa",
+        "8da6147f585b05533e2ba73e43cb",
+    ];
+    let once = line_after(&pair);
+    assert_eq!(once.split(',').nth(5), Some(""));
+    let twice = line_after(&[pair[0], pair[1], pair[0], pair[1]]);
+    let fields: Vec<&str> = twice.split(',').collect();
+    assert_eq!(fields[5..7], ["20.32652", "-156.53285"]);
+    // Airborne, position valid, barometric altitude and position updated.
+    assert_eq!(fields[1], "A0003");
+}
+
+#[test]
+fn update_bits_last_one_interval() {
+    let mut tracker = Tracker::<4>::new();
+    tracker.on_frame(&message("8D485020994409940838175B284F"), 0);
+    tracker.each_second(1000);
+    tracker.each_second(2000);
+    let mut out = [0; MAX_LINE];
+    let only = tracker.aircraft().next().unwrap();
+    let length = aircraft(only, 2000, &mut out).unwrap();
+    assert_eq!(
+        checked(&out[..length]),
+        "#A:485020,1,,,,,,,,183,159,-832,,,,0,0,"
+    );
+}
+
+#[test]
+fn statistics_line() {
+    let mut out = [0; MAX_LINE];
+    let told = Statistics {
+        demodulations: Some(106),
+        mode_ac_frames: None,
+        mode_s_frames: Some(3),
+        stamp_clock_hz: None,
+        uptime_s: 134,
+    };
+    let length = statistics(&told, &mut out).unwrap();
+    assert_eq!(checked(&out[..length]), "#S:106,,3,,134,");
+}
+
+#[test]
+fn degrees_are_rounded_to_five_decimals() {
+    for (angle, text) in [
+        (0, ",0.00000"),
+        (49, ",0.00000"),
+        (50, ",0.00001"),
+        (-49, ",0.00000"),
+        (-50, ",-0.00001"),
+        (203_265_249, ",20.32652"),
+        (203_265_250, ",20.32653"),
+        (-1_565_328_459, ",-156.53285"),
+        (899_999_950, ",90.00000"),
+        (-1_800_000_000, ",-180.00000"),
+    ] {
+        let mut out = [0; 16];
+        let mut line = Text::new(&mut out);
+        degrees_field(&mut line, Some(angle)).unwrap();
+        assert_eq!(line.written(), text.as_bytes(), "{angle}");
+    }
+}
+
+#[test]
+fn the_longest_lines_fit() {
+    let fields = "#A:,FFFFFFFF,,,,,,,,,,,,,,,,0000\r\n".len()
+        + 6
+        + "AAAAAAAA7777".len()
+        + "17".len()
+        + "-90.00000-180.00000".len()
+        + "-2147483648".len() * 2
+        + "360".len()
+        + "65535".len()
+        + "-32768".len()
+        + "65535".len()
+        + "FFFFFFFF".len();
+    assert!(fields <= MAX_LINE, "{fields}");
+    let most = Statistics {
+        demodulations: Some(u32::MAX),
+        mode_ac_frames: Some(u32::MAX),
+        mode_s_frames: Some(u32::MAX),
+        stamp_clock_hz: Some(u32::MAX),
+        uptime_s: u32::MAX,
+    };
+    let mut out = [0; MAX_LINE];
+    let length = statistics(&most, &mut out).unwrap();
+    for short in 0..length {
+        assert_eq!(statistics(&most, &mut out[..short]), Err(Full));
+    }
+}

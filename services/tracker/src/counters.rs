@@ -1,0 +1,102 @@
+//! What became of every frame and of every position offered to the tracker. The sums balance at all times, modulo
+//! 2^32 as each total wraps:
+//!
+//! ```text
+//!   offered   = born + updated + unknown_address + broken + not_tracked
+//!   positions = shown + waiting + refused
+//!   born      = tracked now + timed_out + displaced
+//! ```
+
+/// What became of one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// A new aircraft.
+    Born,
+    /// A known aircraft.
+    Updated,
+    /// The parity is not exact and no aircraft with that address is known.
+    UnknownAddress,
+    /// The parity is wrong.
+    Broken,
+    /// A format without a parity rule (DF19, 24, unassigned).
+    NotTracked,
+}
+
+/// What became of one encoded position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PositionOutcome {
+    /// The aircraft's position is now this one.
+    Shown,
+    /// No pair yet, or the first of two that must agree.
+    Waiting,
+    /// Impossible: the pair gives no place, or one too far from the last.
+    Refused,
+}
+
+/// Totals since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Frames offered.
+    pub offered: u32,
+    /// See [`Outcome::Born`].
+    pub born: u32,
+    /// See [`Outcome::Updated`].
+    pub updated: u32,
+    /// See [`Outcome::UnknownAddress`].
+    pub unknown_address: u32,
+    /// See [`Outcome::Broken`].
+    pub broken: u32,
+    /// See [`Outcome::NotTracked`].
+    pub not_tracked: u32,
+    /// Encoded positions of tracked aircraft.
+    pub positions: u32,
+    /// See [`PositionOutcome::Shown`].
+    pub positions_shown: u32,
+    /// See [`PositionOutcome::Waiting`].
+    pub positions_waiting: u32,
+    /// See [`PositionOutcome::Refused`].
+    pub positions_refused: u32,
+    /// Aircraft that ended by silence.
+    pub timed_out: u32,
+    /// Aircraft that made place for another.
+    pub displaced: u32,
+}
+
+impl Counters {
+    pub(crate) const ZERO: Counters = Counters {
+        offered: 0,
+        born: 0,
+        updated: 0,
+        unknown_address: 0,
+        broken: 0,
+        not_tracked: 0,
+        positions: 0,
+        positions_shown: 0,
+        positions_waiting: 0,
+        positions_refused: 0,
+        timed_out: 0,
+        displaced: 0,
+    };
+
+    pub(crate) fn count(&mut self, outcome: Outcome) {
+        self.offered = self.offered.wrapping_add(1);
+        let total = match outcome {
+            Outcome::Born => &mut self.born,
+            Outcome::Updated => &mut self.updated,
+            Outcome::UnknownAddress => &mut self.unknown_address,
+            Outcome::Broken => &mut self.broken,
+            Outcome::NotTracked => &mut self.not_tracked,
+        };
+        *total = total.wrapping_add(1);
+    }
+
+    pub(crate) fn count_position(&mut self, outcome: PositionOutcome) {
+        self.positions = self.positions.wrapping_add(1);
+        let total = match outcome {
+            PositionOutcome::Shown => &mut self.positions_shown,
+            PositionOutcome::Waiting => &mut self.positions_waiting,
+            PositionOutcome::Refused => &mut self.positions_refused,
+        };
+        *total = total.wrapping_add(1);
+    }
+}

@@ -1,0 +1,128 @@
+//! The flash chip: contents, erase and program, and the serial interface as far as boot2 uses it.
+//!
+//! Source: W25Q16JV datasheet (commands, timing), RP2040 datasheet 4.10 (SSI). The XIP window reads the contents directly.
+//!
+//! | SSI 1800_0000 | register |
+//! |---|---|
+//! | 00 04 08 10 14 | CTRLR0 CTRLR1 SSIENR SER BAUDR |
+//! | 20 24 28 60 | TXFLR RXFLR SR DR0 |
+//! | f0 f4 | RX_SAMPLE_DLY SPI_CTRLR0 |
+
+use std::collections::VecDeque;
+
+/// Sector erase and page program (W25Q16JV: typical 45 ms and 0.4 ms).
+pub const ERASE_SECTOR_US: u64 = 45_000;
+pub const PROGRAM_PAGE_US: u64 = 400;
+/// Erase unit and program unit in bytes.
+pub const SECTOR: usize = 4096;
+pub const PAGE: usize = 256;
+
+/// Flash contents and the serial port in front of them.
+pub struct Flash {
+    pub bytes: Vec<u8>,
+    unique_id: [u8; 8],
+    registers: [u32; 0x100 / 4],
+    replies: VecDeque<u8>,
+    command: Vec<u8>,
+}
+
+impl Flash {
+    /// An erased chip of `size` bytes.
+    pub fn new(size: usize, unique_id: [u8; 8]) -> Self {
+        Self {
+            bytes: vec![0xff; size],
+            unique_id,
+            registers: [0; 0x100 / 4],
+            replies: VecDeque::new(),
+            command: Vec::new(),
+        }
+    }
+
+    /// Registers back to reset.
+    pub fn reset(&mut self) {
+        self.registers = [0; 0x100 / 4];
+        self.replies.clear();
+        self.command.clear();
+    }
+
+    /// Erases whole sectors. False if the range leaves the chip or is not aligned.
+    pub fn erase(&mut self, offset: usize, len: usize) -> bool {
+        if !offset.is_multiple_of(SECTOR)
+            || !len.is_multiple_of(SECTOR)
+            || offset + len > self.bytes.len()
+        {
+            return false;
+        }
+        self.bytes[offset..offset + len].fill(0xff);
+        true
+    }
+
+    /// Programs whole pages: bits only go from 1 to 0.
+    pub fn program(&mut self, offset: usize, data: &[u8]) -> bool {
+        if !offset.is_multiple_of(PAGE)
+            || !data.len().is_multiple_of(PAGE)
+            || offset + data.len() > self.bytes.len()
+        {
+            return false;
+        }
+        for (cell, byte) in self.bytes[offset..].iter_mut().zip(data) {
+            *cell &= byte;
+        }
+        true
+    }
+
+    /// One byte goes out on the serial interface, one comes back.
+    fn exchange(&mut self, out: u8) -> u8 {
+        self.command.push(out);
+        let n = self.command.len() - 1;
+        match (self.command[0], n) {
+            // Status 1: never busy. Status 2: QE set.
+            (0x05, 1..) => 0x00,
+            (0x35, 1..) => 0x02,
+            (0x9f, 1..=3) => [0xef, 0x40, 0x15][n - 1],
+            (0x4b, 5..=12) => self.unique_id[n - 5],
+            _ => 0xff,
+        }
+    }
+
+    /// Reads an SSI register.
+    pub fn read_ssi(&mut self, offset: u32) -> Option<u32> {
+        Some(match offset {
+            0x20 => 0,
+            0x24 => self.replies.len() as u32,
+            // TFNF, TFE, and RFNE while replies wait; never busy.
+            0x28 => 0x06 | u32::from(!self.replies.is_empty()) << 3,
+            0x60 => u32::from(self.replies.pop_front().unwrap_or(0)),
+            0x00 | 0x04 | 0x08 | 0x10 | 0x14 | 0xf0 | 0xf4 => self.registers[offset as usize / 4],
+            _ => return None,
+        })
+    }
+
+    /// Writes an SSI register.
+    pub fn write_ssi(&mut self, offset: u32, value: u32) -> bool {
+        match offset {
+            0x08 => {
+                self.registers[2] = value;
+                if value & 1 == 0 {
+                    self.replies.clear();
+                    self.command.clear();
+                }
+            }
+            0x60 => {
+                // Chip select falls with each drained transfer; a command starts anew once its replies were taken.
+                if self.replies.is_empty() && self.starts_command(value as u8) {
+                    self.command.clear();
+                }
+                let reply = self.exchange(value as u8);
+                self.replies.push_back(reply);
+            }
+            0x00 | 0x04 | 0x10 | 0x14 | 0xf0 | 0xf4 => self.registers[offset as usize / 4] = value,
+            _ => return false,
+        }
+        true
+    }
+
+    fn starts_command(&self, byte: u8) -> bool {
+        !self.command.is_empty() && matches!(byte, 0x05 | 0x06 | 0x35 | 0x01 | 0x31 | 0xeb)
+    }
+}

@@ -1,0 +1,338 @@
+//! A USB host with one CDC-ACM driver: enumerates what is plugged in, opens the port, moves bytes.
+//!
+//! Source: USB 2.0 specification chapters 5, 8 and 9; CDC PSTN subclass 1.2. It runs frames of 1 ms with at most 19 bulk transactions of
+//! 64 bytes each, the most a full-speed host can do (USB 2.0 table 5-9).
+//!
+//!     detached → (pull-up seen, 10 ms) → reset → wait for the device → control transfers → open
+//!
+//! Bytes to the device wait in `to_device`, bytes from it in `from_device`; when `reading` is off the host leaves IN data in the device,
+//! as a terminal that nobody reads does.
+
+use std::collections::VecDeque;
+
+use super::usb::{Handshake, Usb};
+
+/// Transactions a frame holds.
+const SLOTS: u64 = 19;
+/// Debounce after attach (USB 2.0, 7.1.7.3: 100 ms at least; shortened, since no contact bounces here), in frames.
+const DEBOUNCE_FRAMES: u64 = 10;
+/// Frames after which an unanswered control transfer is given up (USB 2.0, 9.2.6.4: 5 s).
+const CONTROL_TIMEOUT_FRAMES: u64 = 5_000;
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Stage {
+    Setup,
+    DataIn,
+    DataOut,
+    StatusIn,
+    StatusOut,
+}
+
+#[derive(Clone, Debug)]
+struct Control {
+    setup: [u8; 8],
+    data: Vec<u8>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum State {
+    Detached,
+    Debounce(u64),
+    Resetting,
+    Running,
+}
+
+/// Where the CDC data interface was found.
+#[derive(Clone, Copy, Default, Debug)]
+struct Endpoints {
+    bulk_in: usize,
+    bulk_out: usize,
+}
+
+/// The host and its view of the device.
+pub struct UsbHost {
+    state: State,
+    plugged: bool,
+    frame: u64,
+    slot: u64,
+    next: u64,
+    queue: VecDeque<Control>,
+    stage: Stage,
+    moved: usize,
+    buffer: Vec<u8>,
+    started: u64,
+    packet0: usize,
+    endpoints: Endpoints,
+    /// Descriptors read, in order: (type, bytes).
+    pub descriptors: Vec<(u8, Vec<u8>)>,
+    /// The port is configured and DTR is set.
+    pub open: bool,
+    /// The host takes IN data.
+    pub reading: bool,
+    pub to_device: VecDeque<u8>,
+    pub from_device: VecDeque<u8>,
+    /// Bytes the host has taken since it was made.
+    pub received: u64,
+    /// What went wrong, for people.
+    pub faults: Vec<String>,
+}
+
+impl Default for UsbHost {
+    fn default() -> Self {
+        Self {
+            state: State::Detached,
+            plugged: true,
+            frame: 0,
+            slot: 0,
+            next: 0,
+            queue: VecDeque::new(),
+            stage: Stage::Setup,
+            moved: 0,
+            buffer: Vec::new(),
+            started: 0,
+            packet0: 64,
+            endpoints: Endpoints::default(),
+            descriptors: Vec::new(),
+            open: false,
+            reading: true,
+            to_device: VecDeque::new(),
+            from_device: VecDeque::new(),
+            received: 0,
+            faults: Vec::new(),
+        }
+    }
+}
+
+impl UsbHost {
+    /// Cycle of the next transaction slot.
+    pub fn next_event(&self) -> u64 {
+        self.next
+    }
+
+    /// Plugs the cable in or out.
+    pub fn plug(&mut self, plugged: bool) {
+        self.plugged = plugged;
+    }
+
+    /// The device was reset: its pull-up is gone for a moment.
+    pub fn device_reset(&mut self) {
+        self.detach();
+    }
+
+    fn detach(&mut self) {
+        self.state = State::Detached;
+        self.open = false;
+        self.queue.clear();
+        self.descriptors.clear();
+        self.stage = Stage::Setup;
+    }
+
+    /// One slot at cycle `now`; `cycles_per_ms` sets the pace. Returns whether the device saw anything.
+    pub fn advance(&mut self, usb: &mut Usb, now: u64, cycles_per_ms: u64) -> bool {
+        self.slot += 1;
+        self.next = now + (cycles_per_ms / SLOTS).max(1);
+        if self.slot >= SLOTS {
+            self.slot = 0;
+            self.frame += 1;
+        }
+        if !self.plugged || !usb.attached() {
+            if self.state != State::Detached {
+                self.detach();
+                usb.disconnect();
+            }
+            return false;
+        }
+        match self.state {
+            State::Detached => {
+                self.state = State::Debounce(self.frame + DEBOUNCE_FRAMES);
+                false
+            }
+            State::Debounce(until) if self.frame < until => false,
+            State::Debounce(_) => {
+                usb.bus_reset();
+                self.state = State::Resetting;
+                true
+            }
+            State::Resetting => {
+                if !usb.bus_reset_pending() {
+                    self.enumerate();
+                    self.state = State::Running;
+                }
+                false
+            }
+            State::Running => {
+                usb.start_of_frame(self.frame as u32);
+                if self.queue.is_empty() {
+                    self.bulk(usb)
+                } else {
+                    self.control(usb)
+                }
+            }
+        }
+    }
+
+    fn request(&mut self, setup: [u8; 8], data: &[u8]) {
+        self.queue.push_back(Control {
+            setup,
+            data: data.to_vec(),
+        });
+    }
+
+    fn enumerate(&mut self) {
+        self.packet0 = 8;
+        self.request([0x80, 6, 0, 1, 0, 0, 8, 0], &[]);
+        self.request([0x00, 5, 7, 0, 0, 0, 0, 0], &[]);
+        self.request([0x80, 6, 0, 1, 0, 0, 18, 0], &[]);
+        self.request([0x80, 6, 0, 2, 0, 0, 9, 0], &[]);
+        self.stage = Stage::Setup;
+    }
+
+    /// A slot of the control transfer at the head of the queue.
+    fn control(&mut self, usb: &mut Usb) -> bool {
+        let Some(transfer) = self.queue.front().cloned() else {
+            return false;
+        };
+        let length = usize::from(u16::from_le_bytes([transfer.setup[6], transfer.setup[7]]));
+        let to_host = transfer.setup[0] & 0x80 != 0;
+        if self.stage != Stage::Setup && self.frame > self.started + CONTROL_TIMEOUT_FRAMES {
+            self.fault(format!(
+                "control transfer {:02x?} timed out",
+                transfer.setup
+            ));
+            return false;
+        }
+        let answer = match self.stage {
+            Stage::Setup => {
+                usb.setup(transfer.setup);
+                self.started = self.frame;
+                self.buffer.clear();
+                self.moved = 0;
+                self.stage = match (to_host, length) {
+                    (_, 0) => Stage::StatusIn,
+                    (true, _) => Stage::DataIn,
+                    (false, _) => Stage::DataOut,
+                };
+                return true;
+            }
+            Stage::DataIn | Stage::StatusIn => usb.token_in(0),
+            Stage::DataOut => {
+                let end = (self.moved + self.packet0).min(transfer.data.len());
+                usb.token_out(0, &transfer.data[self.moved..end])
+            }
+            Stage::StatusOut => usb.token_out(0, &[]),
+        };
+        match (self.stage, answer) {
+            (_, Handshake::Nak) => return false,
+            (_, Handshake::Stall) => {
+                self.fault(format!("control transfer {:02x?} stalled", transfer.setup));
+                return true;
+            }
+            (Stage::DataIn, Handshake::Data(bytes)) => {
+                let short = bytes.len() < self.packet0;
+                self.buffer.extend(&bytes);
+                if short || self.buffer.len() >= length {
+                    self.stage = Stage::StatusOut;
+                }
+            }
+            (Stage::DataOut, Handshake::Ack) => {
+                self.moved = (self.moved + self.packet0).min(transfer.data.len());
+                if self.moved == transfer.data.len() {
+                    self.stage = Stage::StatusIn;
+                }
+            }
+            _ => {
+                self.queue.pop_front();
+                self.stage = Stage::Setup;
+                self.finished(&transfer);
+            }
+        }
+        true
+    }
+
+    fn fault(&mut self, text: String) {
+        self.faults.push(text);
+        self.queue.pop_front();
+        self.stage = Stage::Setup;
+    }
+
+    fn finished(&mut self, transfer: &Control) {
+        if transfer.setup[1] == 6 {
+            let kind = transfer.setup[3];
+            let bytes = std::mem::take(&mut self.buffer);
+            match (kind, bytes.len()) {
+                (1, 8..=17) => self.packet0 = usize::from(bytes[7]).max(8),
+                (1, _) => {}
+                (2, 4..=9) => {
+                    let total = u16::from_le_bytes([bytes[2], bytes[3]]).to_le_bytes();
+                    self.request([0x80, 6, 0, 2, 0, 0, total[0], total[1]], &[]);
+                }
+                (2, _) => match data_endpoints(&bytes) {
+                    Some(endpoints) => {
+                        self.endpoints = endpoints;
+                        self.request([0x00, 9, 1, 0, 0, 0, 0, 0], &[]);
+                        // Line coding 115200 8N1, then DTR and RTS.
+                        self.request(
+                            [0x21, 0x20, 0, 0, 0, 0, 7, 0],
+                            &[0x00, 0xc2, 0x01, 0x00, 0, 0, 8],
+                        );
+                        self.request([0x21, 0x22, 3, 0, 0, 0, 0, 0], &[]);
+                    }
+                    None => self.faults.push("no CDC data interface".into()),
+                },
+                _ => {}
+            }
+            self.descriptors.push((kind, bytes));
+        }
+        if transfer.setup[..2] == [0x21, 0x22] {
+            self.open = transfer.setup[2] & 1 != 0;
+        }
+    }
+
+    /// A bulk transaction: OUT while there is something to say, IN otherwise, in turn.
+    fn bulk(&mut self, usb: &mut Usb) -> bool {
+        if !self.open {
+            return false;
+        }
+        if self.slot.is_multiple_of(2) && !self.to_device.is_empty() {
+            let packet: Vec<u8> = self.to_device.iter().take(64).copied().collect();
+            if usb.token_out(self.endpoints.bulk_out, &packet) == Handshake::Ack {
+                self.to_device.drain(..packet.len());
+                return true;
+            }
+        }
+        if self.reading
+            && let Handshake::Data(bytes) = usb.token_in(self.endpoints.bulk_in)
+        {
+            self.received += bytes.len() as u64;
+            self.from_device.extend(bytes);
+            return true;
+        }
+        false
+    }
+}
+
+/// Finds the bulk endpoints of the first CDC data interface (class 0x0a) in a configuration descriptor.
+fn data_endpoints(mut rest: &[u8]) -> Option<Endpoints> {
+    let mut found = Endpoints::default();
+    let mut in_data_interface = false;
+    while let [len, kind, ..] = *rest {
+        let len = usize::from(len);
+        if len < 2 || len > rest.len() {
+            break;
+        }
+        match kind {
+            4 if len >= 9 => in_data_interface = rest[5] == 0x0a,
+            5 if len >= 7 && in_data_interface => {
+                let n = usize::from(rest[2] & 0xf);
+                if rest[2] & 0x80 != 0 {
+                    found.bulk_in = n;
+                } else {
+                    found.bulk_out = n;
+                }
+            }
+            _ => {}
+        }
+        rest = &rest[len..];
+    }
+    (found.bulk_in != 0 && found.bulk_out != 0).then_some(found)
+}

@@ -1,0 +1,104 @@
+//! The threshold that the comparator compares the level with.
+
+use super::detector::share;
+use super::parameters::{
+    FrontEnd, LEAST_MILLIVOLT, MILLIVOLT_PER_DB, PEAK_DECAY_DB_PER_US, RC_BIAS_MV, Slicer,
+    UNDER_PEAK_DB,
+};
+
+/// The slicer's state.
+pub struct Threshold {
+    slicer: Slicer,
+    trigger_mv: f32,
+    above_average_mv: f32,
+    rc: f32,
+    average_mv: f32,
+    decay_mv: f32,
+    peak_mv: f32,
+}
+
+impl Threshold {
+    pub fn new(front_end: &FrontEnd, step_ns: f32) -> Self {
+        let mut threshold = Self {
+            slicer: front_end.slicer,
+            trigger_mv: 0.0,
+            above_average_mv: 0.0,
+            rc: share(step_ns, front_end.rc_ns),
+            average_mv: LEAST_MILLIVOLT,
+            decay_mv: PEAK_DECAY_DB_PER_US * MILLIVOLT_PER_DB * step_ns / 1000.0,
+            peak_mv: LEAST_MILLIVOLT,
+        };
+        threshold.set_trigger_level_mv(front_end.trigger_level_mv);
+        threshold
+    }
+
+    pub fn set_trigger_level_mv(&mut self, mv: f64) {
+        self.trigger_mv = mv as f32;
+        self.above_average_mv = (mv - RC_BIAS_MV) as f32;
+    }
+
+    /// Average and peak now, mV.
+    pub fn state(&self) -> (f32, f32) {
+        (self.average_mv, self.peak_mv)
+    }
+
+    /// Replaces levels by how far they are above the threshold, sample by sample.
+    pub fn compare(&mut self, mv: &mut [f32]) {
+        match self.slicer {
+            Slicer::Fixed => mv.iter_mut().for_each(|level| *level -= self.trigger_mv),
+            Slicer::RcFollowing => {
+                let mut average = self.average_mv;
+                for sample in mv {
+                    let level = *sample;
+                    average = average * (1.0 - self.rc) + level * self.rc;
+                    *sample = level - average - self.above_average_mv;
+                }
+                self.average_mv = average;
+            }
+            Slicer::PeakFollowing => {
+                let under = UNDER_PEAK_DB * MILLIVOLT_PER_DB;
+                let mut peak = self.peak_mv;
+                for sample in mv {
+                    let level = *sample;
+                    let decayed = peak - self.decay_mv;
+                    peak = if level > decayed { level } else { decayed };
+                    *sample = level - self.trigger_mv.max(peak - under);
+                }
+                self.peak_mv = peak;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The threshold after so many samples of one level.
+    fn after(slicer: Slicer, levels: &[f32]) -> f32 {
+        let mut threshold = Threshold::new(&FrontEnd::with_slicer(slicer), 1000.0);
+        let mut above = levels.to_vec();
+        threshold.compare(&mut above);
+        levels[levels.len() - 1] - above[above.len() - 1]
+    }
+
+    #[test]
+    fn fixed_is_the_trigger_level() {
+        assert_eq!(after(Slicer::Fixed, &[1600.0; 3]), 1300.0);
+    }
+
+    #[test]
+    fn rc_settles_a_bias_above_the_level() {
+        let threshold = after(Slicer::RcFollowing, &[1500.0; 1000]);
+        assert!((threshold - 1515.0).abs() < 0.5);
+    }
+
+    #[test]
+    fn peak_stands_seven_db_under_the_peak_and_decays_to_the_trigger_level() {
+        let threshold = after(Slicer::PeakFollowing, &[1600.0]);
+        assert!((threshold - (1600.0 - 7.0 * MILLIVOLT_PER_DB)).abs() < 0.1);
+        let mut levels = [600.0; 200];
+        levels[0] = 1600.0;
+        assert_eq!(after(Slicer::PeakFollowing, &levels), 1300.0);
+    }
+}
