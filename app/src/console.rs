@@ -5,39 +5,42 @@
 use crate::port::{Outlet, Port};
 use crate::receiver::Receiver;
 use core::fmt::{self, Write};
-use hal::usb::UsbConsole;
+use hal::usb::{PACKET, UsbConsole};
 use shell::{BaudRateReply, LineReader, OK, ProtocolReply, Refusal, Request, Uart, help_lines};
 
 /// Bytes of the longest reply line and its end.
 const MAX_REPLY: usize = crate::stats::MAX_LINE + 2;
 
-/// Lines a turn of the loop answers at most; more wait for the next turn.
-const LINES_A_TURN: usize = 4;
+/// Lines that one packet can end: the shortest line is one byte and its end. All are answered before the next packet is taken.
+const LINES_A_PACKET: usize = PACKET / 2;
 
 /// CONSOLE's input.
 pub struct Console {
     reader: LineReader,
-    waiting: heapless::Deque<Result<Request, Refusal>, LINES_A_TURN>,
-    /// Commands that came faster than they could be answered.
-    pub overrun: u32,
+    waiting: heapless::Deque<Result<Request, Refusal>, LINES_A_PACKET>,
 }
 
 impl Console {
     /// At the start of a line.
     pub const fn new() -> Self {
-        Self { reader: LineReader::new(), waiting: heapless::Deque::new(), overrun: 0 }
+        Self {
+            reader: LineReader::new(),
+            waiting: heapless::Deque::new(),
+        }
     }
 
-    /// Takes what has arrived and moves what waits to be sent. Returns whether anything moved.
-    pub fn poll(&mut self, port: &mut Port<UsbConsole>) -> bool {
-        let Self { reader, waiting, overrun } = self;
-        port.outlet.poll(|byte| {
-            if let Some(command) = reader.feed(byte)
-                && waiting.push_back(command).is_err()
+    /// Takes what has arrived and moves what waits to be sent. Returns whether anything moved, and the commands that found no
+    /// place (none, as long as each turn answers them all).
+    pub fn poll(&mut self, port: &mut Port<UsbConsole>) -> (bool, u32) {
+        let mut lost = 0;
+        let moved = port.outlet.poll(|byte| {
+            if let Some(command) = self.reader.feed(byte)
+                && self.waiting.push_back(command).is_err()
             {
-                *overrun = overrun.wrapping_add(1);
+                lost += 1;
             }
-        })
+        });
+        (moved, lost)
     }
 
     /// The next command to answer.
@@ -81,16 +84,32 @@ pub fn answer(command: Result<Request, Refusal>, receiver: &mut Receiver) {
         }
         Request::QueryBaudRate => {
             // GNSS_UART is not driven yet: rate 0.
-            let text = BaudRateReply { comms_uart: receiver.comms.outlet.baud(), gnss_uart: 0 };
+            let text = BaudRateReply {
+                comms_uart: receiver.comms.outlet.baud(),
+                gnss_uart: 0,
+            };
             reply(&mut receiver.console, format_args!("{text}"));
         }
-        Request::SetBaudRate { uart: Some(Uart::Comms), baud: Some(baud) } => {
+        Request::SetBaudRate {
+            uart: Some(Uart::Comms),
+            baud: Some(baud),
+        } => {
             let done = receiver.comms.outlet.request_baud(baud).is_some();
-            let text = if done { OK } else { "ERROR baud rate out of range" };
+            let text = if done {
+                OK
+            } else {
+                "ERROR baud rate out of range"
+            };
             reply(&mut receiver.console, format_args!("{text}"));
         }
-        Request::SetBaudRate { uart: Some(Uart::Gnss), baud: Some(_) } => {
-            reply(&mut receiver.console, format_args!("ERROR GNSS_UART is not built yet"));
+        Request::SetBaudRate {
+            uart: Some(Uart::Gnss),
+            baud: Some(_),
+        } => {
+            reply(
+                &mut receiver.console,
+                format_args!("ERROR GNSS_UART is not built yet"),
+            );
         }
         Request::SetBaudRate { .. } => reply(&mut receiver.console, format_args!("{OK}")),
         Request::Reboot => {

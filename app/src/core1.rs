@@ -27,7 +27,11 @@ pub struct QueueCounters {
 impl QueueCounters {
     /// All zero.
     pub const fn new() -> Self {
-        Self { offered: AtomicU32::new(0), queued: AtomicU32::new(0), dropped: AtomicU32::new(0) }
+        Self {
+            offered: AtomicU32::new(0),
+            queued: AtomicU32::new(0),
+            dropped: AtomicU32::new(0),
+        }
     }
 }
 
@@ -58,7 +62,14 @@ pub fn run(slot: &'static mut Option<Context>) -> ! {
 /// One block of samples.
 fn block(context: &mut Context) {
     let written = context.capture.wait();
-    let Context { ring, demodulator, demod_counters, queue, queue_counters, .. } = context;
+    let Context {
+        ring,
+        demodulator,
+        demod_counters,
+        queue,
+        queue_counters,
+        ..
+    } = context;
     let mut heard = false;
     demodulator.run(ring, written, demod_counters, &mut |frame| {
         heard = true;
@@ -76,5 +87,8 @@ fn block(context: &mut Context) {
 /// One writer: a load and a store do.
 #[inline(always)]
 fn count(counter: &AtomicU32) {
-    counter.store(counter.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
+    counter.store(
+        counter.load(Ordering::Relaxed).wrapping_add(1),
+        Ordering::Relaxed,
+    );
 }

@@ -53,8 +53,11 @@ static RING: SampleRing = SampleRing::new();
 static QUEUE: TakeOnce<Queue<RawFrame, QUEUE_SLOTS>> = TakeOnce::new(Queue::new());
 static CORE1: TakeOnce<Option<Context>> = TakeOnce::new(None);
 static TRACKER: TakeOnce<Tracker<AIRCRAFT>> = TakeOnce::new(Tracker::new());
-static SHARED: SharedCounters =
-    SharedCounters { capture: CaptureCounters::new(), demod: Counters::new(), queue: QueueCounters::new() };
+static SHARED: SharedCounters = SharedCounters {
+    capture: CaptureCounters::new(),
+    demod: Counters::new(),
+    queue: QueueCounters::new(),
+};
 
 #[hal::entry]
 fn main() -> ! {
@@ -82,7 +85,8 @@ fn start() -> Option<core::convert::Infallible> {
 
     let (producer, consumer) = QUEUE.take()?.split();
     let capture_start_us = timer::now_us();
-    let capture = PulseCapture::start(parts.sampler, parts.dma, &RING.words, &SHARED.capture).ok()?;
+    let capture =
+        PulseCapture::start(parts.sampler, parts.dma, &RING.words, &SHARED.capture).ok()?;
     let context = CORE1.take()?;
     *context = Some(Context {
         capture,
@@ -103,6 +107,8 @@ fn start() -> Option<core::convert::Infallible> {
         tracker: TRACKER.take()?,
         shared: &SHARED,
         decode: DecodeCounters::default(),
+        commands: 0,
+        commands_lost: 0,
         comms_received: 0,
         capture_start_us,
         start: cause,
@@ -135,7 +141,9 @@ fn start() -> Option<core::convert::Infallible> {
         if !(more_frames || more_reports || more_bytes) {
             timer::set_alarm(next_beat_us);
             sleep::unless(|| {
-                receiver.queue.ready() || CommsUart::has_received() || timer::now_us() >= next_beat_us
+                receiver.queue.ready()
+                    || CommsUart::has_received()
+                    || timer::now_us() >= next_beat_us
             });
         }
     }

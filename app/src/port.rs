@@ -54,7 +54,10 @@ pub struct Port<O> {
 impl<O: Outlet> Port<O> {
     /// An unused port.
     pub fn new(outlet: O) -> Self {
-        Self { outlet, counters: PortCounters::default() }
+        Self {
+            outlet,
+            counters: PortCounters::default(),
+        }
     }
 
     /// Sends one whole message or counts it dropped.

@@ -49,6 +49,8 @@ pub struct Receiver {
     pub tracker: &'static mut Tracker<AIRCRAFT>,
     pub shared: &'static SharedCounters,
     pub decode: DecodeCounters,
+    pub commands: u32,
+    pub commands_lost: u32,
     pub comms_received: u32,
     /// Microseconds of the timer at the first sample.
     pub capture_start_us: u64,
@@ -69,11 +71,14 @@ impl Receiver {
     /// Takes frames from the queue. Returns whether more wait; `heard` is called for each.
     pub fn frames(&mut self, mut heard: impl FnMut()) -> bool {
         for _ in 0..FRAMES_A_TURN {
-            let Some(raw_frame) = self.queue.dequeue() else { return false };
+            let Some(raw_frame) = self.queue.dequeue() else {
+                return false;
+            };
             heard();
             let message = Message::decode(&raw_frame.frame);
             self.decode.count(message.parity);
-            self.tracker.on_frame(&message, raw_frame.arrival / TICKS_PER_MS);
+            self.tracker
+                .on_frame(&message, raw_frame.arrival / TICKS_PER_MS);
             self.console_reports.frame(&mut self.console, &raw_frame);
             self.comms_reports.frame(&mut self.comms, &raw_frame);
         }
@@ -96,18 +101,26 @@ impl Receiver {
                 uptime_s: second,
             };
             self.last = (demodulated, self.decode.offered);
-            self.console_reports.second(&mut self.console, self.tracker, &statistics);
-            self.comms_reports.second(&mut self.comms, self.tracker, &statistics);
+            self.console_reports
+                .second(&mut self.console, self.tracker, &statistics);
+            self.comms_reports
+                .second(&mut self.comms, self.tracker, &statistics);
         }
-        let console = self.console_reports.turn(&mut self.console, self.tracker, now_ms);
-        let comms = self.comms_reports.turn(&mut self.comms, self.tracker, now_ms);
+        let console = self
+            .console_reports
+            .turn(&mut self.console, self.tracker, now_ms);
+        let comms = self
+            .comms_reports
+            .turn(&mut self.comms, self.tracker, now_ms);
         console | comms
     }
 
     /// Answers commands; takes away what COMMS_UART received (nothing is commanded there yet). Returns whether anything moved.
     pub fn commands(&mut self, input: &mut Console) -> bool {
-        let mut moved = input.poll(&mut self.console);
+        let (mut moved, lost) = input.poll(&mut self.console);
+        self.commands_lost = self.commands_lost.wrapping_add(lost);
         while let Some(command) = input.next() {
+            self.commands = self.commands.wrapping_add(1);
             console::answer(command, self);
             moved = true;
         }
@@ -131,7 +144,10 @@ impl Receiver {
     }
 
     /// Gives each line of `AT+STATS?`, with CONSOLE to send it on.
-    pub fn tell_statistics(&mut self, mut tell: impl FnMut(&mut Port<UsbConsole>, Result<Line, fmt::Error>)) {
+    pub fn tell_statistics(
+        &mut self,
+        mut tell: impl FnMut(&mut Port<UsbConsole>, Result<Line, fmt::Error>),
+    ) {
         let stats = Stats {
             uptime_s: self.second,
             start: self.start,
@@ -144,6 +160,8 @@ impl Receiver {
             tracked: self.tracker.len(),
             console: self.console.counters,
             comms_uart: self.comms.counters,
+            commands: self.commands,
+            commands_lost: self.commands_lost,
             comms_received: self.comms_received,
             comms_received_lost: self.comms.outlet.received_lost(),
         };

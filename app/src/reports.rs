@@ -28,7 +28,10 @@ pub struct Reports {
 impl Reports {
     /// Reports in this protocol.
     pub const fn new(protocol: Protocol) -> Self {
-        Self { protocol, burst: None }
+        Self {
+            protocol,
+            burst: None,
+        }
     }
 
     /// The protocol in use.
@@ -44,7 +47,11 @@ impl Reports {
 
     /// A frame was accepted.
     pub fn frame<O: Outlet>(&mut self, port: &mut Port<O>, raw_frame: &RawFrame) {
-        let mut out = [0; if raw::MAX_HEX > beast::MAX_MESSAGE { raw::MAX_HEX } else { beast::MAX_MESSAGE }];
+        let mut out = [0; if raw::MAX_HEX > beast::MAX_MESSAGE {
+            raw::MAX_HEX
+        } else {
+            beast::MAX_MESSAGE
+        }];
         let made = match self.protocol {
             Protocol::None | Protocol::Csbee => return,
             Protocol::Beast => beast::frame(&raw_frame.frame, raw_frame.arrival, None, &mut out),
@@ -72,8 +79,15 @@ impl Reports {
     }
 
     /// Goes on with the burst. Returns whether it could go on at once.
-    pub fn turn<O: Outlet, const N: usize>(&mut self, port: &mut Port<O>, tracker: &Tracker<N>, now_ms: u64) -> bool {
-        let Some((next, count)) = self.burst else { return false };
+    pub fn turn<O: Outlet, const N: usize>(
+        &mut self,
+        port: &mut Port<O>,
+        tracker: &Tracker<N>,
+        now_ms: u64,
+    ) -> bool {
+        let Some((next, count)) = self.burst else {
+            return false;
+        };
         if next >= count {
             self.burst = None;
             return false;
@@ -82,7 +96,11 @@ impl Reports {
             return false;
         }
         let mut done = next;
-        for aircraft in tracker.aircraft().skip(next).take(LINES_A_TURN.min(count - next)) {
+        for aircraft in tracker
+            .aircraft()
+            .skip(next)
+            .take(LINES_A_TURN.min(count - next))
+        {
             if port.outlet.free() < csbee::MAX_LINE {
                 break;
             }
@@ -92,7 +110,11 @@ impl Reports {
             done += 1;
         }
         // An aircraft that ended meanwhile leaves fewer than counted: the burst is over.
-        self.burst = if done > next { Some((done, count)) } else { None };
+        self.burst = if done > next {
+            Some((done, count))
+        } else {
+            None
+        };
         self.burst.is_some()
     }
 }

@@ -7,7 +7,7 @@
 //!   +STATS=QUEUE,offered=..,queued=..,dropped=..,waiting=..
 //!   +STATS=DECODE,offered=..,exact=..,..
 //!   +STATS=TRACKER,offered=..,born=..,..        see services/tracker
-//!   +STATS=CONSOLE,offered=..,sent=..,dropped=..,bytes=..
+//!   +STATS=CONSOLE,offered=..,sent=..,dropped=..,bytes=..,commands=..,commands_lost=..
 //!   +STATS=COMMS_UART,offered=..,sent=..,dropped=..,bytes=..,received=..,received_lost=..
 //! ```
 //! The sums that hold at rest (while frames arrive they may be off by what is under way):
@@ -55,6 +55,8 @@ pub struct Stats<'a> {
     pub tracked: usize,
     pub console: PortCounters,
     pub comms_uart: PortCounters,
+    pub commands: u32,
+    pub commands_lost: u32,
     pub comms_received: u32,
     pub comms_received_lost: u32,
 }
@@ -79,18 +81,33 @@ fn line(stage: &str, pairs: &[(&str, u32)]) -> Result<Line, fmt::Error> {
 }
 
 fn port(stage: &str, counters: &PortCounters) -> Result<Line, fmt::Error> {
-    let PortCounters { offered, sent, dropped, bytes } = *counters;
-    line(stage, &[("offered", offered), ("sent", sent), ("dropped", dropped), ("bytes", bytes)])
+    let PortCounters {
+        offered,
+        sent,
+        dropped,
+        bytes,
+    } = *counters;
+    line(
+        stage,
+        &[
+            ("offered", offered),
+            ("sent", sent),
+            ("dropped", dropped),
+            ("bytes", bytes),
+        ],
+    )
 }
 
 impl Stats<'_> {
     /// Gives each line to `out`; a line that does not fit its buffer is an error the caller counts.
     pub fn lines(&self, mut out: impl FnMut(Result<Line, fmt::Error>)) {
         let start = self.start.map_or("unknown", Cause::name);
-        out(line("DEVICE", &[("uptime_s", self.uptime_s)]).and_then(|mut line| {
-            write!(line, ",start={start}")?;
-            Ok(line)
-        }));
+        out(
+            line("DEVICE", &[("uptime_s", self.uptime_s)]).and_then(|mut line| {
+                write!(line, ",start={start}")?;
+                Ok(line)
+            }),
+        );
         out(line(
             "CAPTURE",
             &[
@@ -140,9 +157,20 @@ impl Stats<'_> {
                 ("tracked", self.tracked as u32),
             ],
         ));
-        out(port("CONSOLE", &self.console));
+        out(port("CONSOLE", &self.console).and_then(|mut line| {
+            write!(
+                line,
+                ",commands={},commands_lost={}",
+                self.commands, self.commands_lost
+            )?;
+            Ok(line)
+        }));
         out(port("COMMS_UART", &self.comms_uart).and_then(|mut line| {
-            write!(line, ",received={},received_lost={}", self.comms_received, self.comms_received_lost)?;
+            write!(
+                line,
+                ",received={},received_lost={}",
+                self.comms_received, self.comms_received_lost
+            )?;
             Ok(line)
         }));
     }

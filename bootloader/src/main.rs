@@ -28,6 +28,8 @@ use hal::{Parts, boot, sleep, timer, watchdog};
 #[used]
 static BOOT2: [u8; 256] = rp2040_boot2::BOOT_LOADER_GENERIC_03H;
 
+/// A bootloader that hangs starts over after this long, microseconds.
+const WATCHDOG_US: u32 = 8_000_000;
 /// Between two tellings of the reason, microseconds.
 const TELL_EVERY_US: u64 = 1_000_000;
 
@@ -48,7 +50,10 @@ fn main() -> ! {
         Start::Verify(cause) => cause,
     };
     // At 120 MHz the verification is quick; a board whose crystal is dead cannot say so on any port.
-    let parts = Parts::take();
+    let mut parts = Parts::take();
+    if let Some(parts) = &mut parts {
+        parts.watchdog.start(WATCHDOG_US);
+    }
     match verify() {
         Ok(()) => watchdog::reset(HandOver::Run(cause).words()),
         Err(refusal) => stay(parts, refusal),
@@ -70,7 +75,11 @@ fn stay(parts: Option<Parts>, refusal: Refusal) -> ! {
     let mut next_us = timer::now_us();
     loop {
         if timer::now_us() >= next_us {
-            let line = [b"AT+ERROR (" as &[u8], refusal.reason().as_bytes(), b")\r\n"];
+            let line = [
+                b"AT+ERROR (" as &[u8],
+                refusal.reason().as_bytes(),
+                b")\r\n",
+            ];
             let length: usize = line.iter().map(|part| part.len()).sum();
             if parts.comms_uart.free() >= length {
                 for part in line {
@@ -80,6 +89,7 @@ fn stay(parts: Option<Parts>, refusal: Refusal) -> ! {
             next_us += TELL_EVERY_US;
             timer::set_alarm(next_us);
         }
+        parts.watchdog.feed();
         // What arrives is not read yet: there is no shell. It is taken away, so that nothing piles up.
         while parts.comms_uart.receive().is_some() {}
         sleep::unless(|| timer::now_us() >= next_us);

@@ -12,7 +12,11 @@ pub struct Led<P> {
 impl<P: OutputPin> Led<P> {
     /// Takes the pin, LED off.
     pub fn new(pin: P) -> Self {
-        Self { pin, lit: false, heard: false }
+        Self {
+            pin,
+            lit: false,
+            heard: false,
+        }
     }
 
     /// A frame was accepted.
@@ -24,7 +28,11 @@ impl<P: OutputPin> Led<P> {
     pub fn beat(&mut self) {
         if self.heard != self.lit {
             // A pin that cannot be set leaves the LED as it is; nothing depends on it.
-            let done = if self.heard { self.pin.set_high() } else { self.pin.set_low() };
+            let done = if self.heard {
+                self.pin.set_high()
+            } else {
+                self.pin.set_low()
+            };
             if done.is_ok() {
                 self.lit = self.heard;
             }

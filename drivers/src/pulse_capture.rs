@@ -32,7 +32,11 @@ impl Default for CaptureCounters {
 impl CaptureCounters {
     /// All zero.
     pub const fn new() -> Self {
-        Self { blocks: AtomicU32::new(0), words: AtomicU32::new(0), fifo_overflows: AtomicU32::new(0) }
+        Self {
+            blocks: AtomicU32::new(0),
+            words: AtomicU32::new(0),
+            fifo_overflows: AtomicU32::new(0),
+        }
     }
 }
 
@@ -56,7 +60,12 @@ impl<const N: usize> PulseCapture<N> {
         let start_us = timer::now_us_low();
         sampler.start();
         let clock = WordClock::new(start_us);
-        Ok(Self { sampler, ring, clock, counters })
+        Ok(Self {
+            sampler,
+            ring,
+            clock,
+            counters,
+        })
     }
 
     /// To be called once by the core that will wait, with its interrupts masked.
@@ -84,5 +93,8 @@ impl<const N: usize> PulseCapture<N> {
 /// One writer: a load and a store do.
 #[inline(always)]
 fn count(counter: &AtomicU32, by: u32) {
-    counter.store(counter.load(Ordering::Relaxed).wrapping_add(by), Ordering::Relaxed);
+    counter.store(
+        counter.load(Ordering::Relaxed).wrapping_add(by),
+        Ordering::Relaxed,
+    );
 }

@@ -36,7 +36,8 @@ impl<P: SetDutyCycle> TriggerLevel<P> {
 /// Counts high a period, rounded to the nearest.
 fn counts(millivolts: u16) -> u16 {
     let millivolts = u32::from(millivolts.min(FULL_SCALE_MV));
-    ((millivolts * u32::from(PERIOD) + u32::from(FULL_SCALE_MV) / 2) / u32::from(FULL_SCALE_MV)) as u16
+    ((millivolts * u32::from(PERIOD) + u32::from(FULL_SCALE_MV) / 2) / u32::from(FULL_SCALE_MV))
+        as u16
 }
 
 #[cfg(test)]

@@ -21,12 +21,16 @@ pub struct WordClock<const RING_WORDS: usize, const US_PER_WORD: u32> {
 }
 
 impl<const RING_WORDS: usize, const US_PER_WORD: u32> WordClock<RING_WORDS, US_PER_WORD> {
-    const POWERS_OF_TWO: () = assert!(RING_WORDS.is_power_of_two() && US_PER_WORD.is_power_of_two());
+    const POWERS_OF_TWO: () =
+        assert!(RING_WORDS.is_power_of_two() && US_PER_WORD.is_power_of_two());
 
     /// No word written at `start_us`.
     pub const fn new(start_us: u32) -> Self {
         let () = Self::POWERS_OF_TWO;
-        Self { words: 0, at_us: start_us }
+        Self {
+            words: 0,
+            at_us: start_us,
+        }
     }
 
     /// The absolute count, from the position (index of the next word) and the time at which it was read.
@@ -52,7 +56,10 @@ mod tests {
     type Clock = WordClock<RING, 4>;
 
     fn at(word: u64, start_us: u32) -> (u32, u32) {
-        ((word % RING as u64) as u32, start_us.wrapping_add((word * 4) as u32))
+        (
+            (word % RING as u64) as u32,
+            start_us.wrapping_add((word * 4) as u32),
+        )
     }
 
     #[test]
@@ -68,11 +75,13 @@ mod tests {
     #[test]
     fn a_late_call_is_told_apart_by_the_timer() {
         // From one call to the next: less than a lap, exactly laps, many laps and a bit.
+        // The microsecond count wraps in between.
+        let start = u32::MAX - 4_000;
         for gap in [1u64, 2047, 2048, 2049, 4096, 10_000, 1_000_000_000] {
-            let mut clock = Clock::new(0);
-            let (position, now) = at(777, 0);
+            let mut clock = Clock::new(start);
+            let (position, now) = at(777, start);
             assert_eq!(clock.advance(position, now), 777);
-            let (position, now) = at(777 + gap, 0);
+            let (position, now) = at(777 + gap, start);
             assert_eq!(clock.advance(position, now), 777 + gap, "gap {gap}");
         }
     }
@@ -100,5 +109,10 @@ mod tests {
         assert_eq!(clock.advance(2, 1_000), 2);
         assert_eq!(clock.advance(2, 1_000), 2);
         assert_eq!(clock.advance(3, 1_000), 3);
+        // More than half a lap on a standing timer: forward all the same.
+        let (position, now) = at(5_000, 1_000);
+        assert_eq!(clock.advance(position, now), 5_000);
+        let (position, _) = at(6_500, 1_000);
+        assert_eq!(clock.advance(position, now), 6_500);
     }
 }

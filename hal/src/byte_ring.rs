@@ -29,12 +29,18 @@ impl<const N: usize> ByteRing<N> {
 
     /// An empty ring.
     pub const fn new() -> Self {
-        Self { cells: [const { AtomicU8::new(0) }; N], written: AtomicU32::new(0), read: AtomicU32::new(0) }
+        Self {
+            cells: [const { AtomicU8::new(0) }; N],
+            written: AtomicU32::new(0),
+            read: AtomicU32::new(0),
+        }
     }
 
     /// Bytes waiting.
     pub fn len(&self) -> usize {
-        self.written.load(Ordering::Acquire).wrapping_sub(self.read.load(Ordering::Acquire)) as usize
+        self.written
+            .load(Ordering::Acquire)
+            .wrapping_sub(self.read.load(Ordering::Acquire)) as usize
     }
 
     /// No byte waits.
@@ -56,7 +62,10 @@ impl<const N: usize> ByteRing<N> {
         for (offset, &byte) in message.iter().enumerate() {
             self.cells[start.wrapping_add(offset) & Self::MASK].store(byte, Ordering::Relaxed);
         }
-        self.written.store((start as u32).wrapping_add(message.len() as u32), Ordering::Release);
+        self.written.store(
+            (start as u32).wrapping_add(message.len() as u32),
+            Ordering::Release,
+        );
         true
     }
 
@@ -73,7 +82,10 @@ impl<const N: usize> ByteRing<N> {
     /// Reader: takes the oldest `count` bytes away (at most what waits).
     pub fn consume(&self, count: usize) {
         let count = count.min(self.len()) as u32;
-        self.read.store(self.read.load(Ordering::Relaxed).wrapping_add(count), Ordering::Release);
+        self.read.store(
+            self.read.load(Ordering::Relaxed).wrapping_add(count),
+            Ordering::Release,
+        );
     }
 
     /// Reader: the oldest byte.

@@ -4,8 +4,8 @@
 //!   core 0: launch(context, entry) ── FIFO 0,0,1,VTOR,SP,entry ──▶ ROM on core 1 ──▶ start: interrupts masked ──▶ entry(context)
 //!   core 1: wake_core0() ── one word in the FIFO ──▶ SIO_IRQ_PROC0 pending on core 0 ──▶ WFI ends; drain_wakes() lowers the line
 //! ```
-//! The stack fills SCRATCH_X, a bank that core 0 and DMA do not use. Nothing guards its end but the linker's check of its size:
-//! core 1's call depth is fixed and its code is small.
+//! The stack fills SCRATCH_X, a bank that core 0 and DMA do not use. Nothing guards its end: core 1's call depth is fixed, and the
+//! twin measured 572 of the 4096 bytes in use on a dense recording.
 
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicUsize, Ordering};
@@ -38,7 +38,11 @@ pub struct Wakes {
 
 impl Core1 {
     /// Starts core 1 in `entry` with `context`, interrupts masked.
-    pub fn launch<T: Send + 'static>(mut self, context: &'static mut T, entry: fn(&'static mut T) -> !) -> Wakes {
+    pub fn launch<T: Send + 'static>(
+        mut self,
+        context: &'static mut T,
+        entry: fn(&'static mut T) -> !,
+    ) -> Wakes {
         CONTEXT.store(core::ptr::from_mut(context) as usize, Ordering::Release);
         ENTRY.store(entry as usize, Ordering::Release);
 
@@ -59,7 +63,11 @@ impl Core1 {
                 cortex_m::asm::sev();
             }
             self.fifo.write_blocking(words[next]);
-            next = if self.fifo.read_blocking() == words[next] { next + 1 } else { 0 };
+            next = if self.fifo.read_blocking() == words[next] {
+                next + 1
+            } else {
+                0
+            };
         }
         Wakes { fifo: self.fifo }
     }

@@ -47,7 +47,7 @@ impl<const N: usize> DmaRing<N> {
     pub fn arm(channels: DmaChannels, words: &'static [AtomicU32; N]) -> Result<Self, Misplaced> {
         let base = words.as_ptr() as u32;
         let bytes = (N * 4) as u32;
-        if !N.is_power_of_two() || !(8..=1 << 15).contains(&bytes) || base % bytes != 0 {
+        if !N.is_power_of_two() || !(8..=1 << 15).contains(&bytes) || base & (bytes - 1) != 0 {
             return Err(Misplaced);
         }
         let dma = channels.dma;
@@ -55,7 +55,8 @@ impl<const N: usize> DmaRing<N> {
         // (RING_SIZE, alignment checked above); the words are atomics, so the hardware's writes are no data race.
         unsafe {
             let data = dma.ch(DATA);
-            data.ch_read_addr().write(|w| w.bits((*pac::PIO0::ptr()).rxf(0).as_ptr() as u32));
+            data.ch_read_addr()
+                .write(|w| w.bits((*pac::PIO0::ptr()).rxf(0).as_ptr() as u32));
             data.ch_write_addr().write(|w| w.bits(base));
             data.ch_trans_count().write(|w| w.bits(BLOCK_WORDS));
             data.ch_al1_ctrl().write(|w| {
@@ -68,8 +69,12 @@ impl<const N: usize> DmaRing<N> {
                 }))
             });
             let control = dma.ch(CONTROL);
-            control.ch_read_addr().write(|w| w.bits(BLOCK_RELOAD.as_ptr() as u32));
-            control.ch_write_addr().write(|w| w.bits(data.ch_al1_trans_count_trig().as_ptr() as u32));
+            control
+                .ch_read_addr()
+                .write(|w| w.bits(BLOCK_RELOAD.as_ptr() as u32));
+            control
+                .ch_write_addr()
+                .write(|w| w.bits(data.ch_al1_trans_count_trig().as_ptr() as u32));
             control.ch_trans_count().write(|w| w.bits(1));
             control.ch_al1_ctrl().write(|w| {
                 w.bits(ctrl(|c| {
@@ -88,7 +93,15 @@ impl<const N: usize> DmaRing<N> {
     /// Index of the word that will be written next.
     #[inline(always)]
     pub fn position(&self) -> u32 {
-        (self.dma.ch(DATA).ch_write_addr().read().bits().wrapping_sub(self.base) / 4) & (N as u32 - 1)
+        (self
+            .dma
+            .ch(DATA)
+            .ch_write_addr()
+            .read()
+            .bits()
+            .wrapping_sub(self.base)
+            / 4)
+            & (N as u32 - 1)
     }
 
     /// Enables the block interrupt as a wake-up of the calling core, which keeps its interrupts masked.
@@ -134,7 +147,11 @@ fn ctrl(set: impl FnOnce(&mut Ctrl)) -> u32 {
     const ENABLE: u32 = 1;
     const SIZE_WORD: u32 = 2 << 2;
     const RING_SEL_WRITE: u32 = 1 << 10;
-    let ring = if fields.ring_size_write == 0 { 0 } else { fields.ring_size_write << 6 | RING_SEL_WRITE };
+    let ring = if fields.ring_size_write == 0 {
+        0
+    } else {
+        fields.ring_size_write << 6 | RING_SEL_WRITE
+    };
     ENABLE
         | SIZE_WORD
         | u32::from(fields.high_priority) << 1

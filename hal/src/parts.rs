@@ -23,8 +23,12 @@ use rp2040_hal::{Sio, gpio, pac, xosc::setup_xosc_blocking};
 pub const COMMS_BAUD: u32 = 115_200;
 
 /// VCO 1200 MHz / 5 / 2 = 120 MHz.
-const PLL_SYS_120MHZ: PLLConfig =
-    PLLConfig { vco_freq: HertzU32::MHz(1200), refdiv: 1, post_div1: 5, post_div2: 2 };
+const PLL_SYS_120MHZ: PLLConfig = PLLConfig {
+    vco_freq: HertzU32::MHz(1200),
+    refdiv: 1,
+    post_div1: 5,
+    post_div2: 2,
+};
 
 /// Counts a period of the trigger level's PWM: 120 MHz / 5000 = 24 kHz.
 pub const TRIGGER_LEVEL_PERIOD: u16 = 5000;
@@ -33,7 +37,10 @@ pub const TRIGGER_LEVEL_PERIOD: u16 = 5000;
 pub type TriggerLevelPwm = pwm::Channel<pwm::Slice<TriggerLevelSlice, FreeRunning>, pwm::B>;
 
 /// Starts the trigger level's PWM: `counts` system cycles a period, duty 0.
-fn trigger_level_pwm(mut slice: pwm::Slice<TriggerLevelSlice, FreeRunning>, counts: u16) -> TriggerLevelPwm {
+fn trigger_level_pwm(
+    mut slice: pwm::Slice<TriggerLevelSlice, FreeRunning>,
+    counts: u16,
+) -> TriggerLevelPwm {
     slice.set_top(counts.saturating_sub(1));
     slice.enable();
     slice.channel_b
@@ -81,23 +88,58 @@ impl Parts {
 
         let xosc = setup_xosc_blocking(p.XOSC, HertzU32::Hz(crate::CRYSTAL_HZ)).ok()?;
         let mut clocks = ClocksManager::new(p.CLOCKS);
-        let pll_sys =
-            setup_pll_blocking(p.PLL_SYS, xosc.operating_frequency(), PLL_SYS_120MHZ, &mut clocks, &mut resets).ok()?;
-        let pll_usb =
-            setup_pll_blocking(p.PLL_USB, xosc.operating_frequency(), PLL_USB_48MHZ, &mut clocks, &mut resets).ok()?;
+        let pll_sys = setup_pll_blocking(
+            p.PLL_SYS,
+            xosc.operating_frequency(),
+            PLL_SYS_120MHZ,
+            &mut clocks,
+            &mut resets,
+        )
+        .ok()?;
+        let pll_usb = setup_pll_blocking(
+            p.PLL_USB,
+            xosc.operating_frequency(),
+            PLL_USB_48MHZ,
+            &mut clocks,
+            &mut resets,
+        )
+        .ok()?;
         clocks.init_default(&xosc, &pll_sys, &pll_usb).ok()?;
 
-        resets.reset().modify(|_, w| w.timer().clear_bit().dma().clear_bit().pio0().clear_bit().uart1().clear_bit());
+        resets.reset().modify(|_, w| {
+            w.timer()
+                .clear_bit()
+                .dma()
+                .clear_bit()
+                .pio0()
+                .clear_bit()
+                .uart1()
+                .clear_bit()
+        });
         while {
             let done = resets.reset_done().read();
-            done.timer().bit_is_clear() || done.dma().bit_is_clear() || done.pio0().bit_is_clear() || done.uart1().bit_is_clear()
+            done.timer().bit_is_clear()
+                || done.dma().bit_is_clear()
+                || done.pio0().bit_is_clear()
+                || done.uart1().bit_is_clear()
         } {}
 
         let sio = Sio::new(p.SIO);
-        let pins = Pins::new(gpio::Pins::new(p.IO_BANK0, p.PADS_BANK0, sio.gpio_bank0, &mut resets));
+        let pins = Pins::new(gpio::Pins::new(
+            p.IO_BANK0,
+            p.PADS_BANK0,
+            sio.gpio_bank0,
+            &mut resets,
+        ));
         let slices = pwm::Slices::new(p.PWM, &mut resets);
         let usb_clock: UsbClock = clocks.usb_clock;
-        let bus = UsbBus::new(p.USBCTRL_REGS, p.USBCTRL_DPRAM, usb_clock, true, &mut resets);
+        let bus = UsbBus::new(
+            p.USBCTRL_REGS,
+            p.USBCTRL_DPRAM,
+            usb_clock,
+            true,
+            &mut resets,
+        );
 
         Some(Self {
             led: pins.led,
@@ -107,7 +149,10 @@ impl Parts {
             comms_uart: CommsUart::new(p.UART1, COMMS_BAUD),
             usb: UsbParts { bus },
             watchdog: Watchdog::new(watchdog),
-            core1: Core1 { psm: p.PSM, fifo: sio.fifo },
+            core1: Core1 {
+                psm: p.PSM,
+                fifo: sio.fifo,
+            },
         })
     }
 }

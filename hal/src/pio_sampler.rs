@@ -31,15 +31,25 @@ impl PioSampler {
     /// Sets state machine 0 up for `pin`, stopped. PIO0 must be out of reset.
     pub(crate) fn new(pio: pac::PIO0, pin: u8) -> Self {
         // SAFETY: an encoded instruction; PIO0 is ours alone and stopped.
-        pio.instr_mem(0).write(|w| unsafe { w.bits(u32::from(IN_PINS_1)) });
+        pio.instr_mem(0)
+            .write(|w| unsafe { w.bits(u32::from(IN_PINS_1)) });
         let sm = pio.sm(0);
         // SAFETY: 15.0 is a valid divider.
-        sm.sm_clkdiv().write(|w| unsafe { w.int().bits(CYCLES_PER_SAMPLE).frac().bits(0) });
+        sm.sm_clkdiv()
+            .write(|w| unsafe { w.int().bits(CYCLES_PER_SAMPLE).frac().bits(0) });
         // SAFETY: wrap 0..0 is inside the instruction memory.
-        sm.sm_execctrl().write(|w| unsafe { w.wrap_top().bits(0).wrap_bottom().bits(0) });
+        sm.sm_execctrl()
+            .write(|w| unsafe { w.wrap_top().bits(0).wrap_bottom().bits(0) });
         // SAFETY: a push threshold of 0 means 32 (datasheet, SM_SHIFTCTRL).
         sm.sm_shiftctrl().write(|w| unsafe {
-            w.autopush().set_bit().push_thresh().bits(0).in_shiftdir().clear_bit().fjoin_rx().set_bit()
+            w.autopush()
+                .set_bit()
+                .push_thresh()
+                .bits(0)
+                .in_shiftdir()
+                .clear_bit()
+                .fjoin_rx()
+                .set_bit()
         });
         // SAFETY: any pin number below 32 is valid.
         sm.sm_pinctrl().write(|w| unsafe { w.in_base().bits(pin) });
@@ -50,7 +60,14 @@ impl PioSampler {
     pub fn start(&mut self) {
         self.clear_overflow();
         // SAFETY: starts state machine 0, restarts it and its divider's phase, leaves the others stopped.
-        self.pio.ctrl().write(|w| unsafe { w.sm_enable().bits(1).sm_restart().bits(1).clkdiv_restart().bits(1) });
+        self.pio.ctrl().write(|w| unsafe {
+            w.sm_enable()
+                .bits(1)
+                .sm_restart()
+                .bits(1)
+                .clkdiv_restart()
+                .bits(1)
+        });
     }
 
     /// Did the FIFO ever fill since the last call? Then samples are missing and every later stamp is early.

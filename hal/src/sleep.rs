@@ -13,7 +13,11 @@
 use rp2040_hal::pac::{self, Interrupt};
 
 /// Lines that end the sleep and have no handler.
-const WAKE_LINES: [Interrupt; 3] = [Interrupt::TIMER_IRQ_0, Interrupt::USBCTRL_IRQ, Interrupt::SIO_IRQ_PROC0];
+const WAKE_LINES: [Interrupt; 3] = [
+    Interrupt::TIMER_IRQ_0,
+    Interrupt::USBCTRL_IRQ,
+    Interrupt::SIO_IRQ_PROC0,
+];
 
 /// Sleeps until an interrupt, unless `work_waits` says that there is something to do. It is asked with interrupts masked.
 pub fn unless(work_waits: impl FnOnce() -> bool) {

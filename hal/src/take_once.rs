@@ -15,10 +15,14 @@ unsafe impl<T: Send> Sync for TakeOnce<T> {}
 impl<T> TakeOnce<T> {
     /// A value nobody has taken.
     pub const fn new(value: T) -> Self {
-        Self { taken: Mutex::new(Cell::new(false)), value: UnsafeCell::new(value) }
+        Self {
+            taken: Mutex::new(Cell::new(false)),
+            value: UnsafeCell::new(value),
+        }
     }
 
     /// The value, the first time; `None` ever after.
+    #[expect(clippy::mut_from_ref, reason = "the flag makes the reference unique")]
     pub fn take(&'static self) -> Option<&'static mut T> {
         let was_taken = critical_section::with(|cs| self.taken.borrow(cs).replace(true));
         if was_taken {

@@ -35,7 +35,9 @@ pub fn set_alarm(at_us: u64) {
     registers().intr().write(|w| w.alarm_0().clear_bit_by_one());
     registers().inte().write(|w| w.alarm_0().set_bit());
     // SAFETY: every value of the alarm register is a valid time.
-    registers().alarm0().write(|w| unsafe { w.bits(at_us as u32) });
+    registers()
+        .alarm0()
+        .write(|w| unsafe { w.bits(at_us as u32) });
 }
 
 /// Takes the alarm's interrupt back, so that the line falls.

@@ -36,10 +36,17 @@ fn registers() -> &'static pac::uart0::RegisterBlock {
 impl CommsUart {
     /// Starts the port. UART1 must be out of reset and its pins routed.
     pub(crate) fn new(_uart: pac::UART1, baud: u32) -> Self {
-        let mut port = Self { baud: 0, requested: None };
+        let mut port = Self {
+            baud: 0,
+            requested: None,
+        };
         port.set_divisor(baud.clamp(*BAUD_RANGE.start(), *BAUD_RANGE.end()));
-        registers().uartcr().write(|w| w.uarten().set_bit().txe().set_bit().rxe().set_bit());
-        registers().uartimsc().write(|w| w.rxim().set_bit().rtim().set_bit());
+        registers()
+            .uartcr()
+            .write(|w| w.uarten().set_bit().txe().set_bit().rxe().set_bit());
+        registers()
+            .uartimsc()
+            .write(|w| w.rxim().set_bit().rtim().set_bit());
         // SAFETY: the handler's rings are statics and ready.
         unsafe { pac::NVIC::unmask(pac::Interrupt::UART1_IRQ) };
         port
@@ -74,17 +81,27 @@ impl CommsUart {
     fn set_divisor(&mut self, baud: u32) {
         let divisor = divisor(baud);
         // SAFETY: integer part 1..=65535 and fraction 0..=63 are what the registers take.
-        registers().uartibrd().write(|w| unsafe { w.bits(divisor / 64) });
+        registers()
+            .uartibrd()
+            .write(|w| unsafe { w.bits(divisor / 64) });
         // SAFETY: as above.
-        registers().uartfbrd().write(|w| unsafe { w.bits(divisor % 64) });
+        registers()
+            .uartfbrd()
+            .write(|w| unsafe { w.bits(divisor % 64) });
         // SAFETY: word length code 3 is eight bits.
-        registers().uartlcr_h().write(|w| unsafe { w.wlen().bits(3).fen().set_bit() });
+        registers()
+            .uartlcr_h()
+            .write(|w| unsafe { w.wlen().bits(3).fen().set_bit() });
         self.baud = 4 * crate::SYSTEM_HZ / divisor;
     }
 
     /// Bytes that a message may have right now; 0 while a change of rate waits.
     pub fn free(&self) -> usize {
-        if self.requested.is_some() { 0 } else { TX.free() }
+        if self.requested.is_some() {
+            0
+        } else {
+            TX.free()
+        }
     }
 
     /// Sends the whole message, or refuses it whole.
@@ -122,15 +139,26 @@ fn fill_fifo() {
     while registers().uartfr().read().txff().bit_is_clear() {
         let Some(byte) = TX.pop() else { break };
         // SAFETY: the low eight bits are the data.
-        registers().uartdr().write(|w| unsafe { w.bits(u32::from(byte)) });
+        registers()
+            .uartdr()
+            .write(|w| unsafe { w.bits(u32::from(byte)) });
     }
-    registers().uartimsc().modify(|_, w| w.txim().bit(!TX.is_empty()));
+    registers()
+        .uartimsc()
+        .modify(|_, w| w.txim().bit(!TX.is_empty()));
 }
 
 #[interrupt]
 fn UART1_IRQ() {
     // RX, TX and receive time-out; the data register's own error bits tell the rest.
-    registers().uarticr().write(|w| w.rxic().clear_bit_by_one().txic().clear_bit_by_one().rtic().clear_bit_by_one());
+    registers().uarticr().write(|w| {
+        w.rxic()
+            .clear_bit_by_one()
+            .txic()
+            .clear_bit_by_one()
+            .rtic()
+            .clear_bit_by_one()
+    });
     while registers().uartfr().read().rxfe().bit_is_clear() {
         let word = registers().uartdr().read();
         let damaged = word.fe().bit_is_set() || word.pe().bit_is_set() || word.be().bit_is_set();
@@ -138,7 +166,10 @@ fn UART1_IRQ() {
         if damaged || !RX.offer(&[word.data().bits()]) {
             lost += 1;
         }
-        RX_LOST.store(RX_LOST.load(Ordering::Relaxed).wrapping_add(lost), Ordering::Relaxed);
+        RX_LOST.store(
+            RX_LOST.load(Ordering::Relaxed).wrapping_add(lost),
+            Ordering::Relaxed,
+        );
     }
     fill_fifo();
 }

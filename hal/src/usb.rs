@@ -13,13 +13,15 @@
 use crate::byte_ring::ByteRing;
 use rp2040_hal::usb::UsbBus;
 use usb_device::bus::UsbBusAllocator;
-use usb_device::device::{StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDeviceState, UsbVidPid};
+use usb_device::device::{
+    StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDeviceState, UsbVidPid,
+};
 use usbd_serial::{CdcAcmClass, USB_CLASS_CDC};
 
 /// Bytes of the transmit ring.
 pub const TX_BYTES: usize = 16_384;
 /// Bytes of a bulk packet (full speed's largest).
-const PACKET: usize = 64;
+pub const PACKET: usize = 64;
 
 static TX: ByteRing<TX_BYTES> = ByteRing::new();
 
@@ -34,9 +36,12 @@ pub struct UsbConsole {
 impl UsbConsole {
     /// Shows the device to the host. Called once; `None` the second time.
     pub(crate) fn new(bus: UsbBus) -> Option<Self> {
-        let allocator = cortex_m::singleton!(: UsbBusAllocator<UsbBus> = UsbBusAllocator::new(bus))?;
+        let allocator =
+            cortex_m::singleton!(: UsbBusAllocator<UsbBus> = UsbBusAllocator::new(bus))?;
         let class = CdcAcmClass::new(allocator, PACKET as u16);
-        let strings = StringDescriptors::default().manufacturer("Squitter").product("Squitter 1090");
+        let strings = StringDescriptors::default()
+            .manufacturer("Squitter")
+            .product("Squitter 1090");
         let device = UsbDeviceBuilder::new(allocator, UsbVidPid(0x16C0, 0x27DD))
             .strings(&[strings])
             .ok()?
@@ -44,7 +49,11 @@ impl UsbConsole {
             .ok()?
             .device_class(USB_CLASS_CDC)
             .build();
-        Some(Self { device, class, owes_short_packet: false })
+        Some(Self {
+            device,
+            class,
+            owes_short_packet: false,
+        })
     }
 
     /// Does a host listen: configured, and a program holds the port open?
@@ -62,14 +71,14 @@ impl UsbConsole {
         self.is_open() && TX.offer(message)
     }
 
-    /// Serves the bus and moves bytes both ways, each received byte into `received`. Returns whether anything moved: call again
-    /// before sleeping if so.
-    pub fn poll(&mut self, mut received: impl FnMut(u8)) -> bool {
+    /// Serves the bus and moves one packet each way, each received byte into `received`. Returns whether anything moved: call
+    /// again before sleeping if so. A host that types faster than it is answered waits: its next packet is not taken before.
+    pub fn poll(&mut self, received: impl FnMut(u8)) -> bool {
         let mut moved = self.device.poll(&mut [&mut self.class]);
         let mut packet = [0; PACKET];
-        while let Ok(count) = self.class.read_packet(&mut packet) {
-            moved |= count > 0;
-            packet[..count].iter().copied().for_each(&mut received);
+        if let Ok(count) = self.class.read_packet(&mut packet) {
+            moved = true;
+            packet[..count].iter().copied().for_each(received);
         }
         if self.is_open() {
             moved |= self.send_packet(&mut packet);

@@ -35,7 +35,8 @@ impl Watchdog {
 
     /// Starts the count; `period_us` at most 8 388 607 (the counter runs at twice the tick: RP2040-E1).
     pub fn start(&mut self, period_us: u32) {
-        self.inner.start(MicrosDurationU32::micros(period_us.min(8_388_607)));
+        self.inner
+            .start(MicrosDurationU32::micros(period_us.min(8_388_607)));
     }
 
     /// Starts the count over.
@@ -58,7 +59,10 @@ pub fn reset_source() -> ResetSource {
 
 /// Scratch 2 and 3.
 pub fn hand_over_words() -> [u32; 2] {
-    [registers().scratch2().read().bits(), registers().scratch3().read().bits()]
+    [
+        registers().scratch2().read().bits(),
+        registers().scratch3().read().bits(),
+    ]
 }
 
 /// Writes scratch 2 and 3.
@@ -66,7 +70,9 @@ pub fn set_hand_over_words([word, complement]: [u32; 2]) {
     // SAFETY: scratch registers hold any value.
     registers().scratch2().write(|w| unsafe { w.bits(word) });
     // SAFETY: as above.
-    registers().scratch3().write(|w| unsafe { w.bits(complement) });
+    registers()
+        .scratch3()
+        .write(|w| unsafe { w.bits(complement) });
 }
 
 /// Resets the chip now, leaving `words` in scratch 2 and 3.

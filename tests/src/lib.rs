@@ -1,1 +1,81 @@
-//! End-to-end tests live in `tests/`.
+//! What end-to-end tests and benchmarks share: where the images and the recordings are, and how a bench reports.
+
+use std::path::PathBuf;
+
+/// The checkout's root.
+pub fn root() -> PathBuf {
+    let manifest = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    manifest.parent().map(PathBuf::from).unwrap_or(manifest)
+}
+
+/// The combined image that `cargo xtask fw` writes. Its absence is a failed test, never a skipped one.
+pub fn image() -> PathBuf {
+    let path = root().join("target/fw/squitter-adsbee_1090.uf2");
+    assert!(
+        path.exists(),
+        "{} is missing; build it with `cargo xtask fw` (`cargo xtask test` does)",
+        path.display()
+    );
+    path
+}
+
+/// A recording of `../shared/data`. Its absence is a failed test, never a skipped one.
+pub fn recording(name: &str) -> PathBuf {
+    let path = root().join("../shared/data").join(name);
+    assert!(
+        path.exists(),
+        "the recording {} is missing; it lies in ../shared/data beside the project",
+        path.display()
+    );
+    path
+}
+
+/// Table, CSV and result line of a benchmark.
+pub struct Bench {
+    name: &'static str,
+    header: &'static str,
+    rows: Vec<String>,
+    text: String,
+}
+
+impl Bench {
+    /// A benchmark whose CSV has this header line.
+    pub fn new(name: &'static str, header: &'static str) -> Self {
+        Self {
+            name,
+            header,
+            rows: Vec::new(),
+            text: String::new(),
+        }
+    }
+
+    /// Prints a line of the table.
+    pub fn line(&mut self, line: &str) {
+        println!("{line}");
+        self.text.push_str(line.trim_end());
+        self.text.push('\n');
+    }
+
+    /// Adds a row to the CSV.
+    pub fn row(&mut self, row: String) {
+        self.rows.push(row);
+    }
+
+    /// Writes `target/bench/<name>.csv`, with `--save` also `docs/bench/<name>.txt`, and prints the result line, which is the last.
+    pub fn finish(self, result: &str) -> std::io::Result<()> {
+        let folder = root().join("target/bench");
+        std::fs::create_dir_all(&folder)?;
+        let csv = format!("{}\n{}\n", self.header, self.rows.join("\n"));
+        std::fs::write(folder.join(format!("{}.csv", self.name)), csv)?;
+        if std::env::args().any(|a| a == "--save") {
+            let folder = root().join("docs/bench");
+            std::fs::create_dir_all(&folder)?;
+            std::fs::write(
+                folder.join(format!("{}.txt", self.name)),
+                format!("{}result: {result}\n", self.text),
+            )?;
+        }
+        println!("result: {result}");
+        Ok(())
+    }
+}

@@ -1,7 +1,7 @@
 //! The parts of an ELF file that images are made of: what is loaded where, the sections, the symbols.
 
-use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionFlags, SymbolKind};
 use object::read::elf::{ElfFile32, ProgramHeader};
+use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionFlags, SymbolKind};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -40,7 +40,8 @@ pub struct Image {
 pub fn read(path: &Path) -> Result<Image, String> {
     let fail = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let file = std::fs::read(path).map_err(|error| fail(&error))?;
-    let elf = ElfFile32::<object::Endianness>::parse(file.as_slice()).map_err(|error| fail(&error))?;
+    let elf =
+        ElfFile32::<object::Endianness>::parse(file.as_slice()).map_err(|error| fail(&error))?;
     let endian = elf.endian();
 
     let mut loads = Vec::new();
@@ -48,14 +49,19 @@ pub fn read(path: &Path) -> Result<Image, String> {
         let header = segment.elf_program_header();
         let bytes = segment.data().map_err(|error| fail(&error))?;
         if header.p_filesz(endian) > 0 {
-            loads.push(Load { address: header.p_paddr(endian), bytes: bytes.to_vec() });
+            loads.push(Load {
+                address: header.p_paddr(endian),
+                bytes: bytes.to_vec(),
+            });
         }
     }
     loads.sort_by_key(|load| load.address);
 
     let mut sections = Vec::new();
     for section in elf.sections() {
-        let SectionFlags::Elf { sh_flags } = section.flags() else { continue };
+        let SectionFlags::Elf { sh_flags } = section.flags() else {
+            continue;
+        };
         if sh_flags & u64::from(object::elf::SHF_ALLOC) == 0 || section.size() == 0 {
             continue;
         }
@@ -69,7 +75,12 @@ pub fn read(path: &Path) -> Result<Image, String> {
 
     let symbols = elf
         .symbols()
-        .filter(|symbol| matches!(symbol.kind(), SymbolKind::Text | SymbolKind::Data | SymbolKind::Unknown))
+        .filter(|symbol| {
+            matches!(
+                symbol.kind(),
+                SymbolKind::Text | SymbolKind::Data | SymbolKind::Unknown
+            )
+        })
         .filter_map(|symbol| {
             Some(Symbol {
                 name: symbol.name().ok()?.to_string(),
@@ -88,7 +99,13 @@ pub fn read(path: &Path) -> Result<Image, String> {
             (is_data || is_code).then_some((symbol.address() as u32, is_data))
         })
         .collect();
-    Ok(Image { entry: elf.entry() as u32, loads, sections, symbols, mapping })
+    Ok(Image {
+        entry: elf.entry() as u32,
+        loads,
+        sections,
+        symbols,
+        mapping,
+    })
 }
 
 /// A minimal executable whose loaded bytes are `parts`: what the UF2 converter wants to see.
@@ -107,13 +124,29 @@ pub fn write(entry: u32, parts: &[Load]) -> Vec<u8> {
     for word in [1, entry, HEADER, 0, 0x0500_0000] {
         out.extend_from_slice(&u32::to_le_bytes(word)); // version, entry, program headers, no sections, ARM EABI 5
     }
-    for half in [HEADER as u16, PROGRAM_HEADER as u16, parts.len() as u16, 40, 0, 0] {
+    for half in [
+        HEADER as u16,
+        PROGRAM_HEADER as u16,
+        parts.len() as u16,
+        40,
+        0,
+        0,
+    ] {
         out.extend_from_slice(&half.to_le_bytes());
     }
     let mut offset = HEADER + PROGRAM_HEADER * parts.len() as u32;
     for part in parts {
         let length = part.bytes.len() as u32;
-        for word in [PT_LOAD, offset, part.address, part.address, length, length, READ_EXECUTE, 4] {
+        for word in [
+            PT_LOAD,
+            offset,
+            part.address,
+            part.address,
+            length,
+            length,
+            READ_EXECUTE,
+            4,
+        ] {
             out.extend_from_slice(&word.to_le_bytes());
         }
         offset += length;

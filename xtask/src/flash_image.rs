@@ -31,7 +31,10 @@ pub fn contiguous(name: &str, image: &Image, base: u32, end: u32) -> Result<Vec<
         }
         let start = (load.address - base) as usize;
         if start < bytes.len() {
-            return Err(format!("{name}: loaded parts overlap at {:#010x}", load.address));
+            return Err(format!(
+                "{name}: loaded parts overlap at {:#010x}",
+                load.address
+            ));
         }
         bytes.resize(start, ERASED);
         bytes.extend_from_slice(&load.bytes);
@@ -44,7 +47,12 @@ pub fn contiguous(name: &str, image: &Image, base: u32, end: u32) -> Result<Vec<
 
 /// The flash's parts, each padded to whole sectors. The result is checked by the bootloader's own code before it is returned.
 pub fn compose(bootloader: &Image, app: &Image, version: [u8; 4]) -> Result<Vec<Load>, String> {
-    let boot = contiguous("bootloader", bootloader, XIP_BASE, XIP_BASE + BOOTLOADER_END)?;
+    let boot = contiguous(
+        "bootloader",
+        bootloader,
+        XIP_BASE,
+        XIP_BASE + BOOTLOADER_END,
+    )?;
     check_boot2(&boot)?;
     let image_at = SLOT_A.link_address();
     let image = contiguous("app", app, image_at, image_at + IMAGE_MAX)?;
@@ -60,9 +68,18 @@ pub fn compose(bootloader: &Image, app: &Image, version: [u8; 4]) -> Result<Vec<
         .map_err(|refusal| format!("the bootloader would refuse this app: {}", refusal.reason()))?;
     const { assert!(SECTOR == HEADER_AREA as usize) };
     Ok(vec![
-        Load { address: XIP_BASE, bytes: padded(boot) },
-        Load { address: XIP_BASE + SLOT_A.header, bytes: padded(header_bytes) },
-        Load { address: image_at, bytes: padded(image) },
+        Load {
+            address: XIP_BASE,
+            bytes: padded(boot),
+        },
+        Load {
+            address: XIP_BASE + SLOT_A.header,
+            bytes: padded(header_bytes),
+        },
+        Load {
+            address: image_at,
+            bytes: padded(image),
+        },
     ])
 }
 
@@ -73,13 +90,17 @@ fn padded(mut bytes: Vec<u8>) -> Vec<u8> {
 
 /// The ROM runs boot2 only if its last four bytes are the CRC of the other 252 (RP2040 datasheet, 2.8.1.3.1).
 fn check_boot2(boot: &[u8]) -> Result<(), String> {
-    let boot2 = boot.get(..PAGE).ok_or("the bootloader image is shorter than boot2")?;
+    let boot2 = boot
+        .get(..PAGE)
+        .ok_or("the bootloader image is shorter than boot2")?;
     let crc = crc32_mpeg2(&boot2[..PAGE - 4]);
     let stored = u32::from_le_bytes([boot2[252], boot2[253], boot2[254], boot2[255]]);
     if crc == stored {
         Ok(())
     } else {
-        Err(format!("boot2's CRC is {stored:#010x}, computed {crc:#010x}: the ROM would not run it"))
+        Err(format!(
+            "boot2's CRC is {stored:#010x}, computed {crc:#010x}: the ROM would not run it"
+        ))
     }
 }
 
@@ -89,7 +110,11 @@ fn crc32_mpeg2(bytes: &[u8]) -> u32 {
     for &byte in bytes {
         crc ^= u32::from(byte) << 24;
         for _ in 0..8 {
-            crc = if crc & 1 << 31 != 0 { crc << 1 ^ 0x04C1_1DB7 } else { crc << 1 };
+            crc = if crc & 1 << 31 != 0 {
+                crc << 1 ^ 0x04C1_1DB7
+            } else {
+                crc << 1
+            };
         }
     }
     crc
@@ -100,14 +125,29 @@ mod tests {
     use super::*;
 
     fn image(loads: &[(u32, &[u8])]) -> Image {
-        let loads = loads.iter().map(|&(address, bytes)| Load { address, bytes: bytes.to_vec() }).collect();
-        Image { entry: 0, loads, sections: Vec::new(), symbols: Vec::new(), mapping: Default::default() }
+        let loads = loads
+            .iter()
+            .map(|&(address, bytes)| Load {
+                address,
+                bytes: bytes.to_vec(),
+            })
+            .collect();
+        Image {
+            entry: 0,
+            loads,
+            sections: Vec::new(),
+            symbols: Vec::new(),
+            mapping: Default::default(),
+        }
     }
 
     #[test]
     fn gaps_between_loaded_parts_are_erased_flash() {
         let image = image(&[(100, &[1, 2]), (104, &[3])]);
-        assert_eq!(contiguous("x", &image, 100, 200), Ok(vec![1, 2, 0xFF, 0xFF, 3]));
+        assert_eq!(
+            contiguous("x", &image, 100, 200),
+            Ok(vec![1, 2, 0xFF, 0xFF, 3])
+        );
     }
 
     #[test]

@@ -14,7 +14,13 @@ use boot_contract::flash_map::XIP_BASE;
 /// Parts of names, in either mangling, that must not stand in flash.
 const HOT_NAMES: [&str; 3] = ["5demod", "3app5core1", "13pulse_capture4wait"];
 /// Parts of names of functions that only a panic calls.
-const PANIC_NAMES: [&str; 5] = ["9panicking", "22panic_already_borrowed", "slice_index_fail", "13unwrap_failed", "17rust_begin_unwind"];
+const PANIC_NAMES: [&str; 5] = [
+    "9panicking",
+    "22panic_already_borrowed",
+    "slice_index_fail",
+    "13unwrap_failed",
+    "17rust_begin_unwind",
+];
 /// The flash window: 16 MiB from the XIP base.
 const FLASH: std::ops::Range<u32> = XIP_BASE..XIP_BASE + (16 << 20);
 
@@ -27,18 +33,32 @@ pub struct Hot {
 
 /// Checks the app's placement.
 pub fn check(app: &Image) -> Result<Hot, String> {
-    let hot = app.sections.iter().find(|section| section.name == ".hot").ok_or("the app has no .hot section")?;
+    let hot = app
+        .sections
+        .iter()
+        .find(|section| section.name == ".hot")
+        .ok_or("the app has no .hot section")?;
     let area = hot.address..hot.address + hot.size;
     let mut functions = 0;
     for symbol in &app.symbols {
-        let named_hot = HOT_NAMES.iter().any(|part| symbol.name.contains(part)) && !symbol.name.contains("Thunk");
+        let named_hot = HOT_NAMES.iter().any(|part| symbol.name.contains(part))
+            && !symbol.name.contains("Thunk");
         if named_hot && FLASH.contains(&symbol.address) {
-            return Err(format!("{} is in flash at {:#010x}: core 1 must not run or read it there", symbol.name, symbol.address));
+            return Err(format!(
+                "{} is in flash at {:#010x}: core 1 must not run or read it there",
+                symbol.name, symbol.address
+            ));
         }
         functions += usize::from(symbol.is_function && area.contains(&symbol.address));
     }
-    if !app.symbols.iter().any(|symbol| symbol.name.contains("5demod") && area.contains(&symbol.address)) {
-        return Err("no function of demod stands in .hot: the check would prove nothing".to_string());
+    if !app
+        .symbols
+        .iter()
+        .any(|symbol| symbol.name.contains("5demod") && area.contains(&symbol.address))
+    {
+        return Err(
+            "no function of demod stands in .hot: the check would prove nothing".to_string(),
+        );
     }
     let mut panic_words = 0;
     let mut refused = Vec::new();
@@ -48,23 +68,42 @@ pub fn check(app: &Image) -> Result<Hot, String> {
         }
         match target(app, word) {
             Target::Panic => panic_words += 1,
-            Target::Other(what) => refused.push(format!("  {address:#010x} (in {}) refers to {what}", owner(app, address))),
+            Target::Other(what) => refused.push(format!(
+                "  {address:#010x} (in {}) refers to {what}",
+                owner(app, address)
+            )),
         }
     }
     if !refused.is_empty() {
-        return Err(format!("code for core 1 refers to flash:\n{}", refused.join("\n")));
+        return Err(format!(
+            "code for core 1 refers to flash:\n{}",
+            refused.join("\n")
+        ));
     }
-    Ok(Hot { bytes: hot.size, functions, panic_words })
+    Ok(Hot {
+        bytes: hot.size,
+        functions,
+        panic_words,
+    })
 }
 
 /// Aligned words of the section that mapping symbols mark as data.
 fn data_words<'a>(app: &'a Image, section: &'a Section) -> impl Iterator<Item = (u32, u32)> + 'a {
-    section.bytes.chunks_exact(4).enumerate().filter_map(move |(index, bytes)| {
-        let address = section.address + index as u32 * 4;
-        let last = app.mapping.range(..=address).next_back();
-        let is_data = last.is_none_or(|(_, is_data)| *is_data);
-        is_data.then(|| (address, u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])))
-    })
+    section
+        .bytes
+        .chunks_exact(4)
+        .enumerate()
+        .filter_map(move |(index, bytes)| {
+            let address = section.address + index as u32 * 4;
+            let last = app.mapping.range(..=address).next_back();
+            let is_data = last.is_none_or(|(_, is_data)| *is_data);
+            is_data.then(|| {
+                (
+                    address,
+                    u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+                )
+            })
+        })
 }
 
 enum Target {
@@ -74,7 +113,10 @@ enum Target {
 
 /// What a flash address is.
 fn target(app: &Image, word: u32) -> Target {
-    let function = app.symbols.iter().find(|symbol| symbol.is_function && symbol.address & !1 == word & !1);
+    let function = app
+        .symbols
+        .iter()
+        .find(|symbol| symbol.is_function && symbol.address & !1 == word & !1);
     if let Some(function) = function {
         return if PANIC_NAMES.iter().any(|part| function.name.contains(part)) {
             Target::Panic
@@ -82,13 +124,19 @@ fn target(app: &Image, word: u32) -> Target {
             Target::Other(function.name.clone())
         };
     }
-    if is_location(app, word) { Target::Panic } else { Target::Other(format!("{word:#010x}")) }
+    if is_location(app, word) {
+        Target::Panic
+    } else {
+        Target::Other(format!("{word:#010x}"))
+    }
 }
 
 /// core::panic::Location: pointer and length of the file name, line, column.
 fn is_location(app: &Image, address: u32) -> bool {
     let Some([name, length, line, column]) = flash_bytes(app, address, 16).map(|bytes| {
-        let word = |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+        let word = |at: usize| {
+            u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]])
+        };
         [word(0), word(4), word(8), word(12)]
     }) else {
         return false;
@@ -96,8 +144,11 @@ fn is_location(app: &Image, address: u32) -> bool {
     let plausible = (4..512).contains(&length) && (1..100_000).contains(&line) && column < 1000;
     // A trailing zero belongs to the name since locations carry C strings.
     plausible
-        && flash_bytes(app, name, length as usize)
-            .is_some_and(|name| String::from_utf8_lossy(name).trim_end_matches('\0').ends_with(".rs"))
+        && flash_bytes(app, name, length as usize).is_some_and(|name| {
+            String::from_utf8_lossy(name)
+                .trim_end_matches('\0')
+                .ends_with(".rs")
+        })
 }
 
 fn flash_bytes(app: &Image, address: u32, length: usize) -> Option<&[u8]> {
@@ -129,14 +180,25 @@ mod tests {
             size: bytes.len() as u32,
             bytes,
         };
-        let function = |name: &str, address| Symbol { name: name.to_string(), address, is_function: true };
-        let mut rodata: Vec<u8> = [0x1001_6010u32, 6, 12, 5].iter().flat_map(|word| word.to_le_bytes()).collect();
+        let function = |name: &str, address| Symbol {
+            name: name.to_string(),
+            address,
+            is_function: true,
+        };
+        let mut rodata: Vec<u8> = [0x1001_6010u32, 6, 12, 5]
+            .iter()
+            .flat_map(|word| word.to_le_bytes())
+            .collect();
         rodata.extend_from_slice(b"run.rs\0\0\x01\x02\x03\x04");
         Image {
             entry: 0,
             loads: Vec::new(),
             sections: vec![
-                section(".hot", 0x2000_0000, [0x1001_5001u32.to_le_bytes(), literal.to_le_bytes()].concat()),
+                section(
+                    ".hot",
+                    0x2000_0000,
+                    [0x1001_5001u32.to_le_bytes(), literal.to_le_bytes()].concat(),
+                ),
                 section(".rodata", 0x1001_6000, rodata),
             ],
             symbols: vec![
@@ -169,7 +231,11 @@ mod tests {
     #[test]
     fn a_demod_symbol_in_flash_is_refused() {
         let mut app = app(0);
-        app.symbols.push(Symbol { name: "_ZN5demod5TABLEE".into(), address: 0x1001_7000, is_function: false });
+        app.symbols.push(Symbol {
+            name: "_ZN5demod5TABLEE".into(),
+            address: 0x1001_7000,
+            is_function: false,
+        });
         assert!(check(&app).is_err());
     }
 }

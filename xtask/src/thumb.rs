@@ -21,10 +21,14 @@ enum Toolchain {
 pub fn build(packages: &[&str]) -> Result<PathBuf, String> {
     let target = workspace::target()?;
     let mut command = match toolchain()? {
-        Toolchain::Rustup => Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())),
+        Toolchain::Rustup => {
+            Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        }
         Toolchain::Debian => {
             let mut command = Command::new("/usr/bin/cargo");
-            command.env("RUSTC_BOOTSTRAP", "1").env("RUSTC", "/usr/bin/rustc");
+            command
+                .env("RUSTC_BOOTSTRAP", "1")
+                .env("RUSTC", "/usr/bin/rustc");
             command
         }
     };
@@ -35,7 +39,10 @@ pub fn build(packages: &[&str]) -> Result<PathBuf, String> {
     for package in packages {
         command.args(["--package", package]);
     }
-    command.args(["--target", TARGET, "--profile", PROFILE]).arg("--target-dir").arg(&target);
+    command
+        .args(["--target", TARGET, "--profile", PROFILE])
+        .arg("--target-dir")
+        .arg(&target);
     workspace::run(&mut command)?;
     Ok(target.join(TARGET).join(PROFILE))
 }
@@ -46,12 +53,16 @@ fn toolchain() -> Result<Toolchain, String> {
         return Ok(Toolchain::Rustup);
     }
     eprintln!("xtask: installing the {TARGET} target");
-    let added = Command::new("rustup").args(["target", "add", TARGET]).status();
+    let added = Command::new("rustup")
+        .args(["target", "add", TARGET])
+        .status();
     if added.is_ok_and(|status| status.success()) && target_installed() {
         return Ok(Toolchain::Rustup);
     }
     if Path::new("/usr/bin/cargo").exists() && Path::new("/usr/bin/rustc").exists() {
-        eprintln!("xtask: rustup cannot install it; building core from source with Debian's toolchain");
+        eprintln!(
+            "xtask: rustup cannot install it; building core from source with Debian's toolchain"
+        );
         return Ok(Toolchain::Debian);
     }
     Err(format!(
@@ -61,12 +72,18 @@ fn toolchain() -> Result<Toolchain, String> {
 
 /// The compiler has a core library for the target.
 fn target_installed() -> bool {
-    let libraries = Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]).output();
+    let libraries = Command::new("rustc")
+        .args(["--print", "target-libdir", "--target", TARGET])
+        .output();
     libraries.is_ok_and(|output| {
         let folder = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
         output.status.success()
             && std::fs::read_dir(folder).is_ok_and(|mut files| {
-                files.any(|file| file.is_ok_and(|file| file.file_name().to_string_lossy().starts_with("libcore-")))
+                files.any(|file| {
+                    file.is_ok_and(|file| {
+                        file.file_name().to_string_lossy().starts_with("libcore-")
+                    })
+                })
             })
     })
 }

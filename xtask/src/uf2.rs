@@ -22,8 +22,14 @@ const BLOCK: usize = 512;
 /// Writes `parts` as a UF2 file and checks it.
 pub fn write(path: &Path, entry: u32, parts: &[Load]) -> Result<(), String> {
     let merged = path.with_extension("merged.elf");
-    std::fs::write(&merged, elf::write(entry, parts)).map_err(|error| format!("{}: {error}", merged.display()))?;
-    workspace::run(Command::new(converter()?).arg(&merged).arg(path).stdout(std::process::Stdio::null()))?;
+    std::fs::write(&merged, elf::write(entry, parts))
+        .map_err(|error| format!("{}: {error}", merged.display()))?;
+    workspace::run(
+        Command::new(converter()?)
+            .arg(&merged)
+            .arg(path)
+            .stdout(std::process::Stdio::null()),
+    )?;
     let file = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
     compare(&file, parts).map_err(|reason| format!("{}: {reason}", path.display()))?;
     std::fs::remove_file(&merged).map_err(|error| format!("{}: {error}", merged.display()))
@@ -38,7 +44,15 @@ fn converter() -> Result<PathBuf, String> {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         workspace::run(
             Command::new(cargo)
-                .args(["install", CONVERTER, "--version", CONVERTER_VERSION, "--no-default-features", "--locked", "--root"])
+                .args([
+                    "install",
+                    CONVERTER,
+                    "--version",
+                    CONVERTER_VERSION,
+                    "--no-default-features",
+                    "--locked",
+                    "--root",
+                ])
                 .arg(&tools)
                 .arg("--target-dir")
                 .arg(tools.join("build")),
@@ -49,23 +63,36 @@ fn converter() -> Result<PathBuf, String> {
 
 /// The pages of a UF2 file by address.
 fn pages(file: &[u8]) -> Result<BTreeMap<u32, Vec<u8>>, String> {
-    if file.is_empty() || file.len() % BLOCK != 0 {
-        return Err(format!("{} bytes are no whole number of blocks", file.len()));
+    if file.is_empty() || !file.len().is_multiple_of(BLOCK) {
+        return Err(format!(
+            "{} bytes are no whole number of blocks",
+            file.len()
+        ));
     }
     let count = file.len() / BLOCK;
     let mut pages = BTreeMap::new();
     for (index, block) in file.chunks_exact(BLOCK).enumerate() {
-        let word = |at: usize| u32::from_le_bytes([block[at], block[at + 1], block[at + 2], block[at + 3]]);
+        let word = |at: usize| {
+            u32::from_le_bytes([block[at], block[at + 1], block[at + 2], block[at + 3]])
+        };
         if [word(0), word(4)] != MAGIC_START || word(BLOCK - 4) != MAGIC_END {
             return Err(format!("block {index}: wrong magic"));
         }
         if word(16) as usize != PAGE || word(20) as usize != index || word(24) as usize != count {
-            return Err(format!("block {index}: length {}, number {} of {}", word(16), word(20), word(24)));
+            return Err(format!(
+                "block {index}: length {}, number {} of {}",
+                word(16),
+                word(20),
+                word(24)
+            ));
         }
         if word(28) != FAMILY_RP2040 {
             return Err(format!("block {index}: family {:#010x}", word(28)));
         }
-        if pages.insert(word(12), block[32..32 + PAGE].to_vec()).is_some() {
+        if pages
+            .insert(word(12), block[32..32 + PAGE].to_vec())
+            .is_some()
+        {
             return Err(format!("block {index}: address {:#010x} twice", word(12)));
         }
     }
@@ -80,7 +107,9 @@ fn compare(file: &[u8], parts: &[Load]) -> Result<(), String> {
             let address = part.address + (index * PAGE) as u32;
             match found.remove(&address) {
                 None => return Err(format!("page {address:#010x} is missing")),
-                Some(page) if page != expected => return Err(format!("page {address:#010x} differs")),
+                Some(page) if page != expected => {
+                    return Err(format!("page {address:#010x} differs"));
+                }
                 Some(_) => {}
             }
         }
@@ -97,7 +126,16 @@ mod tests {
 
     fn block(index: u32, count: u32, address: u32, fill: u8) -> Vec<u8> {
         let mut block = Vec::new();
-        for word in [MAGIC_START[0], MAGIC_START[1], 0x2000, address, 256, index, count, FAMILY_RP2040] {
+        for word in [
+            MAGIC_START[0],
+            MAGIC_START[1],
+            0x2000,
+            address,
+            256,
+            index,
+            count,
+            FAMILY_RP2040,
+        ] {
             block.extend_from_slice(&word.to_le_bytes());
         }
         block.resize(32 + PAGE, fill);
@@ -107,13 +145,19 @@ mod tests {
     }
 
     fn part(address: u32, fill: u8, pages: usize) -> Load {
-        Load { address, bytes: vec![fill; PAGE * pages] }
+        Load {
+            address,
+            bytes: vec![fill; PAGE * pages],
+        }
     }
 
     #[test]
     fn a_file_with_exactly_the_parts_is_accepted() {
         let file = [block(0, 2, 0x100, 7), block(1, 2, 0x400, 9)].concat();
-        assert_eq!(compare(&file, &[part(0x100, 7, 1), part(0x400, 9, 1)]), Ok(()));
+        assert_eq!(
+            compare(&file, &[part(0x100, 7, 1), part(0x400, 9, 1)]),
+            Ok(())
+        );
     }
 
     #[test]

@@ -5,8 +5,12 @@ use std::process::Command;
 
 /// The workspace's root: cargo tells a program that it runs where its package is.
 pub fn root() -> Result<PathBuf, String> {
-    let package = std::env::var_os("CARGO_MANIFEST_DIR").ok_or("run this as `cargo xtask ...`: CARGO_MANIFEST_DIR is not set")?;
-    PathBuf::from(package).parent().map(PathBuf::from).ok_or("the package has no parent folder".to_string())
+    let package = std::env::var_os("CARGO_MANIFEST_DIR")
+        .ok_or("run this as `cargo xtask ...`: CARGO_MANIFEST_DIR is not set")?;
+    PathBuf::from(package)
+        .parent()
+        .map(PathBuf::from)
+        .ok_or("the package has no parent folder".to_string())
 }
 
 /// The target folder: always the workspace's own, whatever CARGO_TARGET_DIR says, so that everyone finds the images.
@@ -22,6 +26,12 @@ pub fn images() -> Result<PathBuf, String> {
 /// Runs a command to its end; its failure is an error that shows the command.
 pub fn run(command: &mut Command) -> Result<(), String> {
     let shown = format!("{command:?}");
-    let status = command.status().map_err(|error| format!("cannot start {shown}: {error}"))?;
-    if status.success() { Ok(()) } else { Err(format!("{shown}: {status}")) }
+    let status = command
+        .status()
+        .map_err(|error| format!("cannot start {shown}: {error}"))?;
+    if status.success() {
+        Ok(())
+    } else {
+        Err(format!("{shown}: {status}"))
+    }
 }

@@ -46,9 +46,15 @@ pub struct Slot {
 }
 
 /// Slot A.
-pub const SLOT_A: Slot = Slot { header: 0x01_4000, image: 0x01_4000 + HEADER_AREA };
+pub const SLOT_A: Slot = Slot {
+    header: 0x01_4000,
+    image: 0x01_4000 + HEADER_AREA,
+};
 /// Slot B.
-pub const SLOT_B: Slot = Slot { header: 0x10_7000, image: 0x10_7000 + HEADER_AREA };
+pub const SLOT_B: Slot = Slot {
+    header: 0x10_7000,
+    image: 0x10_7000 + HEADER_AREA,
+};
 
 impl Slot {
     /// The address the slot's image is linked for.

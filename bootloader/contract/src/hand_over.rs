@@ -112,10 +112,22 @@ mod tests {
     use std::vec::Vec;
 
     fn all() -> Vec<HandOver> {
-        let causes = [Cause::PowerOn, Cause::Watchdog, Cause::Command, Cause::Panic, Cause::Other];
+        let causes = [
+            Cause::PowerOn,
+            Cause::Watchdog,
+            Cause::Command,
+            Cause::Panic,
+            Cause::Other,
+        ];
         causes
             .iter()
-            .flat_map(|&cause| [HandOver::Run(cause), HandOver::Report(cause), HandOver::Restart(cause)])
+            .flat_map(|&cause| {
+                [
+                    HandOver::Run(cause),
+                    HandOver::Report(cause),
+                    HandOver::Restart(cause),
+                ]
+            })
             .collect()
     }
 
@@ -134,6 +146,17 @@ mod tests {
                 words[bit / 32] ^= 1 << (bit % 32);
                 assert_eq!(HandOver::from_words(words), None);
             }
+        }
+    }
+
+    #[test]
+    fn a_pair_of_somebody_else_says_nothing() {
+        let [word, _] = HandOver::Run(Cause::PowerOn).words();
+        for foreign in [word ^ 0x0001_0000, word & 0xFFFF, word | 0x8000_0000] {
+            assert_eq!(HandOver::from_words([foreign, !foreign]), None);
+        }
+        for unknown in [0x5351_0001, 0x5351_0401, 0x5351_0100, 0x5351_0106] {
+            assert_eq!(HandOver::from_words([unknown, !unknown]), None);
         }
     }
 

@@ -139,7 +139,10 @@ mod tests {
     fn erased_flash_is_told_from_damage() {
         assert_eq!(Header::decode(&[0xFF; LEN]), Err(HeaderError::Erased));
         assert_eq!(Header::decode(&[0; LEN]), Err(HeaderError::Magic));
-        assert_eq!(Header::decode(&[0xFF; LEN - 1]), Err(HeaderError::Truncated));
+        assert_eq!(
+            Header::decode(&[0xFF; LEN - 1]),
+            Err(HeaderError::Truncated)
+        );
     }
 
     #[test]

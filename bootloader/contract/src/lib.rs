@@ -26,7 +26,8 @@ mod linker_test;
 pub const BOARD_ADSBEE_1090: [u8; 16] = *b"adsbee_1090\0\0\0\0\0";
 
 /// CRC-32/ISO-HDLC (the one of zip and Ethernet) with a 1 KiB table.
-const CRC32: crc::Crc<u32, crc::Table<1>> = crc::Crc::<u32, crc::Table<1>>::new(&crc::CRC_32_ISO_HDLC);
+const CRC32: crc::Crc<u32, crc::Table<1>> =
+    crc::Crc::<u32, crc::Table<1>>::new(&crc::CRC_32_ISO_HDLC);
 
 /// CRC-32/ISO-HDLC of `bytes`.
 pub fn crc32(bytes: &[u8]) -> u32 {

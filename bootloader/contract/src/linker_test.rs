@@ -1,6 +1,8 @@
 //! The linker scripts of the workspace say what [`crate::flash_map`] says.
 
-use crate::flash_map::{BOOT2_LEN, BOOTLOADER, BOOTLOADER_END, IMAGE_MAX, SLOT_A, SRAM_BASE, SRAM_END, XIP_BASE};
+use crate::flash_map::{
+    BOOT2_LEN, BOOTLOADER, BOOTLOADER_END, IMAGE_MAX, SLOT_A, SRAM_BASE, SRAM_END, XIP_BASE,
+};
 use std::string::String;
 
 const BOOTLOADER_X: &str = include_str!("../../../linker/bootloader.x");
@@ -32,12 +34,18 @@ fn region(script: &str, name: &str) -> (u32, u32) {
 #[test]
 fn the_bootloader_is_linked_into_its_area() {
     assert_eq!(region(BOOTLOADER_X, "BOOT2"), (XIP_BASE, BOOT2_LEN));
-    assert_eq!(region(BOOTLOADER_X, "FLASH"), (XIP_BASE + BOOTLOADER, BOOTLOADER_END - BOOTLOADER));
+    assert_eq!(
+        region(BOOTLOADER_X, "FLASH"),
+        (XIP_BASE + BOOTLOADER, BOOTLOADER_END - BOOTLOADER)
+    );
 }
 
 #[test]
 fn the_app_is_linked_into_slot_a() {
-    assert_eq!(region(APP_SLOT_A_X, "FLASH"), (SLOT_A.link_address(), IMAGE_MAX));
+    assert_eq!(
+        region(APP_SLOT_A_X, "FLASH"),
+        (SLOT_A.link_address(), IMAGE_MAX)
+    );
 }
 
 #[test]

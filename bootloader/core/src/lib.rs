@@ -63,34 +63,55 @@ mod tests {
     #[test]
     fn a_run_request_after_a_forced_reset_jumps_with_its_cause() {
         let words = HandOver::Run(Cause::Panic).words();
-        assert_eq!(start(words, ResetSource::WatchdogForce), Start::Jump(Cause::Panic));
+        assert_eq!(
+            start(words, ResetSource::WatchdogForce),
+            Start::Jump(Cause::Panic)
+        );
     }
 
     #[test]
     fn a_run_request_that_power_on_left_behind_is_not_believed() {
         let words = HandOver::Run(Cause::PowerOn).words();
-        assert_eq!(start(words, ResetSource::PowerOn), Start::Verify(Cause::PowerOn));
-        assert_eq!(start(words, ResetSource::WatchdogTimer), Start::Verify(Cause::Watchdog));
+        assert_eq!(
+            start(words, ResetSource::PowerOn),
+            Start::Verify(Cause::PowerOn)
+        );
+        assert_eq!(
+            start(words, ResetSource::WatchdogTimer),
+            Start::Verify(Cause::Watchdog)
+        );
     }
 
     #[test]
     fn a_report_is_never_taken_for_a_request() {
         let words = HandOver::Report(Cause::PowerOn).words();
-        assert_eq!(start(words, ResetSource::WatchdogForce), Start::Verify(Cause::Other));
-        assert_eq!(start(words, ResetSource::WatchdogTimer), Start::Verify(Cause::Watchdog));
+        assert_eq!(
+            start(words, ResetSource::WatchdogForce),
+            Start::Verify(Cause::Other)
+        );
+        assert_eq!(
+            start(words, ResetSource::WatchdogTimer),
+            Start::Verify(Cause::Watchdog)
+        );
     }
 
     #[test]
     fn a_restart_names_its_own_cause() {
         for cause in [Cause::Command, Cause::Panic] {
             let words = HandOver::Restart(cause).words();
-            assert_eq!(start(words, ResetSource::WatchdogForce), Start::Verify(cause));
+            assert_eq!(
+                start(words, ResetSource::WatchdogForce),
+                Start::Verify(cause)
+            );
         }
     }
 
     #[test]
     fn half_a_word_pair_verifies() {
         let [word, _] = HandOver::Run(Cause::PowerOn).words();
-        assert_eq!(start([word, 0], ResetSource::WatchdogForce), Start::Verify(Cause::Other));
+        assert_eq!(
+            start([word, 0], ResetSource::WatchdogForce),
+            Start::Verify(Cause::Other)
+        );
     }
 }

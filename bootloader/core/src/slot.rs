@@ -46,7 +46,12 @@ impl Refusal {
 }
 
 /// Checks the slot whose header area is `header` and whose image area is `image`, for `board`.
-pub fn check_slot(slot: Slot, board: &[u8; 16], header: &[u8], image: &[u8]) -> Result<Header, Refusal> {
+pub fn check_slot(
+    slot: Slot,
+    board: &[u8; 16],
+    header: &[u8],
+    image: &[u8],
+) -> Result<Header, Refusal> {
     let found = Header::decode(header).map_err(Refusal::Header)?;
     if found.board != *board {
         return Err(Refusal::Board);
@@ -57,7 +62,9 @@ pub fn check_slot(slot: Slot, board: &[u8; 16], header: &[u8], image: &[u8]) -> 
     if !(IMAGE_MIN..=IMAGE_MAX).contains(&found.image_length) {
         return Err(Refusal::Length);
     }
-    let image = image.get(..found.image_length as usize).ok_or(Refusal::Length)?;
+    let image = image
+        .get(..found.image_length as usize)
+        .ok_or(Refusal::Length)?;
     if boot_contract::crc32(image) != found.image_crc {
         return Err(Refusal::ImageCrc);
     }
@@ -70,7 +77,8 @@ pub fn check_slot(slot: Slot, board: &[u8; 16], header: &[u8], image: &[u8]) -> 
         return Err(Refusal::StackPointer);
     }
     let reset = vector(1);
-    let inside = (slot.link_address()..slot.link_address() + found.image_length).contains(&(reset & !1));
+    let inside =
+        (slot.link_address()..slot.link_address() + found.image_length).contains(&(reset & !1));
     if reset & 1 == 0 || !inside {
         return Err(Refusal::ResetVector);
     }
@@ -131,9 +139,15 @@ mod tests {
     #[test]
     fn another_board_or_slot_is_refused() {
         let image = image();
-        let other = Header { board: *b"adsbee_1090_e\0\0\0", ..header(&image) };
+        let other = Header {
+            board: *b"adsbee_1090_e\0\0\0",
+            ..header(&image)
+        };
         assert_eq!(check(other, &image), Err(Refusal::Board));
-        let other = Header { link_address: SLOT_B.link_address(), ..header(&image) };
+        let other = Header {
+            link_address: SLOT_B.link_address(),
+            ..header(&image)
+        };
         assert_eq!(check(other, &image), Err(Refusal::LinkAddress));
     }
 
@@ -141,17 +155,31 @@ mod tests {
     fn a_length_beyond_slot_or_flash_or_below_the_vectors_is_refused() {
         let image = image();
         for length in [0, IMAGE_MIN - 1, 1001, IMAGE_MAX + 1, u32::MAX] {
-            let wrong = Header { image_length: length, ..header(&image) };
+            let wrong = Header {
+                image_length: length,
+                ..header(&image)
+            };
             assert_eq!(check(wrong, &image), Err(Refusal::Length), "{length}");
         }
     }
 
     #[test]
     fn a_stack_pointer_outside_sram_or_unaligned_is_refused() {
-        for stack in [0, SRAM_BASE, SRAM_END + 8, 0x2004_0004, 0x1001_5000, u32::MAX] {
+        for stack in [
+            0,
+            SRAM_BASE,
+            SRAM_END + 8,
+            0x2004_0004,
+            0x1001_5000,
+            u32::MAX,
+        ] {
             let mut image = image();
             image[0..4].copy_from_slice(&stack.to_le_bytes());
-            assert_eq!(check(header(&image), &image), Err(Refusal::StackPointer), "{stack:#x}");
+            assert_eq!(
+                check(header(&image), &image),
+                Err(Refusal::StackPointer),
+                "{stack:#x}"
+            );
         }
     }
 
@@ -160,7 +188,11 @@ mod tests {
         for reset in [0, 0x1001_5100, 0x1001_4FFF, 0x1001_5000 + 1001, 0x2000_0001] {
             let mut image = image();
             image[4..8].copy_from_slice(&u32::to_le_bytes(reset));
-            assert_eq!(check(header(&image), &image), Err(Refusal::ResetVector), "{reset:#x}");
+            assert_eq!(
+                check(header(&image), &image),
+                Err(Refusal::ResetVector),
+                "{reset:#x}"
+            );
         }
     }
 }

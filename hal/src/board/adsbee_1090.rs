@@ -22,7 +22,10 @@
 //! Source: the hardware facts in the project's ADSBee reference notes. Pins that nobody uses stay as reset leaves them.
 
 use rp2040_hal::gpio::bank0::{Gpio4, Gpio5, Gpio15, Gpio18, Gpio19, Gpio25};
-use rp2040_hal::gpio::{self, FunctionPio0, FunctionPwm, FunctionSioOutput, FunctionUart, Pin, PinState, PullDown, PullNone, PullUp};
+use rp2040_hal::gpio::{
+    self, FunctionPio0, FunctionPwm, FunctionSioOutput, FunctionUart, Pin, PinState, PullDown,
+    PullNone, PullUp,
+};
 
 /// GPIO of PULSES: the PIO program's input base.
 pub const PULSES_GPIO: u8 = 19;
@@ -55,8 +58,14 @@ impl Pins {
         Self {
             comms_tx: pins.gpio4.reconfigure(),
             comms_rx: pins.gpio5.reconfigure(),
-            led: pins.gpio15.into_pull_type().into_push_pull_output_in_state(PinState::Low),
-            bias_tee_enable_n: pins.gpio18.into_pull_type().into_push_pull_output_in_state(PinState::High),
+            led: pins
+                .gpio15
+                .into_pull_type()
+                .into_push_pull_output_in_state(PinState::Low),
+            bias_tee_enable_n: pins
+                .gpio18
+                .into_pull_type()
+                .into_push_pull_output_in_state(PinState::High),
             pulses: pins.gpio19.reconfigure(),
             trigger_level: pins.gpio25.reconfigure(),
         }

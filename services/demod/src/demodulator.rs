@@ -19,7 +19,7 @@
 
 use crate::bits;
 use crate::counters::{Counters, add};
-use crate::gate::gate;
+use crate::gate::Half;
 use crate::heard::Heard;
 use crate::ring::{Aligned, RING_WORDS, SampleRing};
 use crate::score::{MOST_MISMATCHES, mismatches};
@@ -132,19 +132,20 @@ impl Demodulator {
         let first = self.next as u32;
         let end = first.wrapping_add(ready);
         let mut index = first;
-        let mut a = ring.word(index);
-        let mut b = ring.word(index.wrapping_add(1));
+        let mut after = ring.word(index.wrapping_add(1));
+        let mut half = Half::of(ring.word(index), after);
         let mut found = None;
         while index != end {
-            let c = ring.word(index.wrapping_add(2));
-            let hits = gate(a, b, c);
+            let newest = ring.word(index.wrapping_add(2));
+            let next = Half::of(after, newest);
+            let hits = half.hits(next);
             if hits != 0 {
                 found = Some(hits);
                 break;
             }
             index = index.wrapping_add(1);
-            a = b;
-            b = c;
+            after = newest;
+            half = next;
         }
         let passed = index.wrapping_sub(first);
         self.next += u64::from(passed);
@@ -158,16 +159,25 @@ impl Demodulator {
         let word = self.next;
         let start = word * u64::from(SAMPLES_PER_WORD);
         let mut rest = hits;
+        let mut at = 0;
+        let mut bytes = [0; LONG_BYTES];
         let mut accepted = None;
         add(&counters.candidates, hits.count_ones());
         while rest != 0 {
-            let sample = rest.leading_zeros();
-            rest &= !(0x8000_0000 >> sample);
+            // Phase by phase: the core has no instruction to count leading zeros, and the library's is not in SRAM.
+            let sample = at;
+            let hit = rest & 0x8000_0000 != 0;
+            rest <<= 1;
+            at += 1;
+            if !hit {
+                continue;
+            }
             if start + u64::from(sample) < self.free_from {
                 add(&counters.superseded, 1);
                 continue;
             }
-            let Some((outcome, phase, bytes)) = try_phases(ring, word as u32, sample, &self.heard)
+            let Some((outcome, phase)) =
+                try_phases(ring, word as u32, sample, &self.heard, &mut bytes)
             else {
                 add(&counters.rejected_by_score, 1);
                 continue;
@@ -199,12 +209,13 @@ impl Demodulator {
             {
                 self.heard.note(icao.0);
             }
+            let phase = phase + leading_phase(ring, word as u32, sample.wrapping_add_signed(phase));
             let first = (start + u64::from(sample)).saturating_add_signed(i64::from(phase));
             let bits = received(&bytes).len() as u32 * 8;
             self.free_from = first + u64::from(PREAMBLE_SAMPLES + BIT_SAMPLES * bits);
             accepted = Some(RawFrame {
                 frame,
-                arrival: first * TICKS_PER_SAMPLE,
+                arrival: ticks(first),
                 repaired: 0,
                 level: None,
             });
@@ -232,50 +243,86 @@ fn received(bytes: &[u8; LONG_BYTES]) -> &[u8] {
     }
 }
 
-/// The best that a candidate and its neighbours give: outcome, phase, bytes. `None` when no phase looks like a preamble.
+/// Ticks of so many samples: 15 each. The black box keeps the compiler from calling the library's 64-bit multiplication instead.
+fn ticks(samples: u64) -> u64 {
+    const { assert!(TICKS_PER_SAMPLE == 15) };
+    core::hint::black_box(samples << 4) - samples
+}
+
+/// The samples from `sample` of `word` on; `sample` may be up to a word before it (wrapped).
+#[inline(always)]
+fn from_sample(ring: &SampleRing, word: u32, sample: u32) -> Aligned<'_> {
+    Aligned::new(
+        ring,
+        word.wrapping_sub(1),
+        sample.wrapping_add(SAMPLES_PER_WORD),
+    )
+}
+
+/// The best that a candidate and its neighbours give: outcome and phase, and its bytes. `None` when no phase looks like a preamble.
 fn try_phases(
     ring: &SampleRing,
     word: u32,
     sample: u32,
     heard: &Heard,
-) -> Option<(Outcome, i32, [u8; LONG_BYTES])> {
-    let mut best: Option<(Outcome, i32, [u8; LONG_BYTES])> = None;
+    bytes: &mut [u8; LONG_BYTES],
+) -> Option<(Outcome, i32)> {
+    let mut best: Option<(Outcome, i32)> = None;
+    let mut last = 0;
     for phase in PHASES {
-        // One word back, so that the phase before sample 0 is no special case.
-        let at = sample
-            .wrapping_add(SAMPLES_PER_WORD)
-            .wrapping_add_signed(phase);
-        let mut samples = Aligned::new(ring, word.wrapping_sub(1), at);
-        let first = samples.take();
-        let second = samples.take();
-        if mismatches(first, second) > MOST_MISMATCHES {
+        let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
+        if mismatches(samples.take(), samples.take()) > MOST_MISMATCHES {
             continue;
         }
-        let (outcome, bytes) = demodulate(&mut samples, heard);
-        if best.is_none_or(|(so_far, ..)| outcome > so_far) {
-            best = Some((outcome, phase, bytes));
+        let outcome = demodulate(&mut samples, heard, bytes);
+        last = phase;
+        if best.is_none_or(|(so_far, _)| outcome > so_far) {
+            best = Some((outcome, phase));
         }
         if outcome == Outcome::Exact {
             break;
         }
     }
+    // `bytes` holds the last phase tried. Only frames vouched for by an address come here, and few of those.
+    if let Some((outcome, phase)) = best
+        && outcome >= Outcome::Address
+        && phase != last
+    {
+        let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
+        samples.take();
+        samples.take();
+        demodulate(&mut samples, heard, bytes);
+    }
     best
+}
+
+/// How many samples from an accepted phase to the one that fits the preamble best, the earliest of equals: a frame also comes out right a
+/// sample or two off.
+fn leading_phase(ring: &SampleRing, word: u32, sample: u32) -> i32 {
+    let mut best = (u32::MAX, 0);
+    for phase in -2..=2 {
+        let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
+        let off = mismatches(samples.take(), samples.take());
+        if off < best.0 {
+            best = (off, phase);
+        }
+    }
+    best.1
 }
 
 /// Demodulates one phase and judges it. `samples` stands at the first bit.
 #[inline(never)]
-fn demodulate(samples: &mut Aligned, heard: &Heard) -> (Outcome, [u8; LONG_BYTES]) {
+fn demodulate(samples: &mut Aligned, heard: &Heard, bytes: &mut [u8; LONG_BYTES]) -> Outcome {
     let from = *samples;
-    let mut bytes = [0; LONG_BYTES];
     let (first, sure_of_first) = bits::byte_and_certainty(samples);
     let (second, sure_of_second) = bits::byte_and_certainty(samples);
     if sure_of_first + sure_of_second < LEAST_CERTAINTY {
-        return (Outcome::NoBits, bytes);
+        return Outcome::NoBits;
     }
     // DF 0, 4, 5, 11, 16 to 21 and 24 to 31 exist.
     const FORMATS: u32 = 0xFF3F_0831;
     if FORMATS >> (first >> 3) & 1 == 0 {
-        return (Outcome::BadFormat, bytes);
+        return Outcome::BadFormat;
     }
     let length = if first & 0x80 != 0 {
         LONG_BYTES
@@ -287,28 +334,28 @@ fn demodulate(samples: &mut Aligned, heard: &Heard) -> (Outcome, [u8; LONG_BYTES
     }
     bytes[0] = first;
     bytes[1] = second;
-    let residual = crc24::residual(received(&bytes));
+    let residual = crc24::residual(received(bytes));
     let (vouched, by) = match first >> 3 {
-        17..=19 if residual == 0 => return (Outcome::Exact, bytes),
-        17..=19 => return (Outcome::BadParity, bytes),
+        17..=19 if residual == 0 => return Outcome::Exact,
+        17..=19 => return Outcome::BadParity,
         11 => match residual {
-            0 => return (Outcome::Exact, bytes),
+            0 => return Outcome::Exact,
             1..=HIGHEST_INTERROGATOR_CODE => (
                 u32::from_be_bytes([0, bytes[1], bytes[2], bytes[3]]),
                 Outcome::Interrogator,
             ),
-            _ => return (Outcome::BadParity, bytes),
+            _ => return Outcome::BadParity,
         },
         _ => (residual, Outcome::Address),
     };
     if !heard.knows(vouched) {
-        return (Outcome::UnknownAddress, bytes);
+        return Outcome::UnknownAddress;
     }
     let mut again = from;
     let words = length as u32 * 2;
     let certainty: u32 = (0..words).map(|_| bits::certainty(again.take())).sum();
     if certainty < words * LEAST_CERTAINTY_QUARTERS {
-        return (Outcome::Unsure, bytes);
+        return Outcome::Unsure;
     }
-    (by, bytes)
+    by
 }

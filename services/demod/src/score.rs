@@ -17,7 +17,7 @@ const GAPS_FIRST: u32 = 0x0001_FFC0;
 /// Samples 32-63 that belong to gaps: 42-58.
 const GAPS_SECOND: u32 = 0x003F_FFE0;
 
-/// Most mismatches of a preamble that is worth demodulating. Every true preamble of the recordings that the gate finds has at most 9; white noise
+/// Most mismatches of a preamble that is worth demodulating. Of the frames in the recordings whose preamble passes the gate all but two or three have at most 9; white noise
 /// that crosses the threshold all the time has as few at 400 gate hits a second.
 pub(crate) const MOST_MISMATCHES: u32 = 9;
 

@@ -15,7 +15,7 @@
 //! | 6 | ADS-R | ICAO, or not where IMF = 1 |
 //! | 7 | reserved | not ICAO |
 //!
-//! Source: DO-260B 2.2.3.2.1.3 and 2.2.17 as told by Doc 9871, tables of CF and IMF.
+//! Source: the CF and IMF tables of DO-260B and ICAO Doc 9871.
 
 use crate::frame::Frame;
 

@@ -6,7 +6,7 @@
 //!                                                   Q = 0: Gillham code, 100 ft steps from -1200 ft
 //! ```
 //! Gillham: D2 D4 A1 A2 A4 B1 B2 B4 count 500 ft in reflected (Gray) code, C1 C2 C4 count 100 ft 1-5 in a code of their own that runs
-//! backwards in every other 500 ft. Source: Annex 10 Volume IV, 3.1.2.6.5.4 and the appendix to chapter 3.
+//! backwards in every other 500 ft. Source: ICAO Annex 10 Volume IV (the AC field and the table of Mode C pulses).
 
 /// Altitude in feet; which one (pressure or geometric) is told by the field that holds it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn gillham_rows_of_the_standard() {
-        // A, B, C, D pulses of the table in Annex 10: -1200 ft is C4 alone, -1000 ft C2 alone, 0 ft B2 B4 C2 (less -1000).
+        // A, B, C, D pulses of the table in Annex 10: -1200 ft is C4 alone, -1000 ft C2 alone, 0 ft B2 B4 C2.
         let c4 = 1 << 8;
         let c2 = 1 << 10;
         let c1 = 1 << 12;

@@ -9,7 +9,7 @@
 //! the air (5.1 m), a quarter of it on the surface.
 //!
 //! Range of the local way: within half a zone of the reference, so 180 NM in the air and 45 NM on the surface.
-//! Source: DO-260B A.1.7 (the equations), Doc 9871 C.2.6.
+//! Source: the equations as "The 1090 Megahertz Riddle" prints them.
 
 use crate::nl::nl;
 

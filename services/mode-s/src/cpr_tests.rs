@@ -21,7 +21,7 @@ fn cpr(kind: CprKind, format: CprFormat, latitude: u32, longitude: u32) -> Cpr {
     }
 }
 
-/// DO-260B A.1.7.3, exact in `i128`: the zone's fraction rounded to 17 bits, then the longitude at the latitude that was sent.
+/// The standard's encoding equations, exact in `i128`: the zone's fraction rounded to 17 bits, then the longitude at the latitude that was sent.
 fn encode(kind: CprKind, format: CprFormat, place: Position) -> Cpr {
     let steps = |angle: i32, zones: i64| {
         let span = i128::from(kind.span());
@@ -185,4 +185,33 @@ fn poles_and_date_line_come_back() {
             }
         }
     }
+}
+
+#[test]
+fn a_pair_whose_halves_lie_two_miles_apart_is_still_in_the_right_zone() {
+    // 0.04° of latitude are 0.39 of the step that decides the zone; half a step is the limit.
+    for north in [-0.04, 0.04] {
+        let (first, second) = (at(48.3, 11.7), at(48.3 + north, 11.7));
+        let even = encode(CprKind::Airborne, CprFormat::Even, first);
+        let odd = encode(CprKind::Airborne, CprFormat::Odd, second);
+        let found = global(even, odd, None).unwrap();
+        assert!((found.latitude - second.latitude).abs() < 250, "{found:?}");
+    }
+}
+
+#[test]
+fn a_pair_on_both_sides_of_a_step_of_nl_is_no_place() {
+    // NL goes from 59 to 58 at 10.470 471 3°.
+    let even = encode(CprKind::Airborne, CprFormat::Even, at(10.4700, 20.0));
+    let odd = encode(CprKind::Airborne, CprFormat::Odd, at(10.4710, 20.0));
+    assert_eq!(global(even, odd, None), None);
+    assert_eq!(global(odd, even, None), None);
+}
+
+#[test]
+fn places_are_rounded_to_nearest() {
+    // One step of an even latitude is 457.76 units, one of a longitude of 59 zones 465.52.
+    let one_step = cpr(CprKind::Airborne, CprFormat::Even, 1, 1);
+    let found = local(one_step, at(0.0, 0.0)).unwrap();
+    assert_eq!((found.latitude, found.longitude), (458, 466));
 }

@@ -3,7 +3,7 @@
 //! ```text
 //!   ID13  C1 A1 C2 A2 C4 A4 X B1 D1 B2 D2 B4 D4     digits A B C D, each 4-2-1
 //! ```
-//! Source: Annex 10 Volume IV, 3.1.2.6.7.1.
+//! Source: ICAO Annex 10 Volume IV (the ID field).
 
 /// Mode A code: four octal digits in 12 bits, so that `{:04o}` prints the squawk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -200,3 +200,29 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn surface_movement_and_track() {
+    let Me::SurfacePosition(position) = me("8C4841753AAB238733C8CD4020B1") else {
+        panic!()
+    };
+    // 18 kt, 140.625°.
+    assert_eq!(position.ground_speed_eighths, Some(18 * 8));
+    assert_eq!(position.track, Some(CentiDegrees(14_063)));
+    assert_eq!(position.nic, 8);
+}
+
+#[test]
+fn air_air_surveillance_tells_ground_and_altitude() {
+    // VS is bit 6; AC 0x06A2 is 10 000 ft.
+    for (first, on_ground) in [(0x00, false), (0x04, true)] {
+        let frame = Frame::from_bytes(&[first, 0, 0x06, 0xA2, 1, 2, 3]).unwrap();
+        assert_eq!(
+            Message::decode(&frame).body,
+            Body::AirAir {
+                on_ground,
+                altitude: Some(AltitudeFt(10_000))
+            }
+        );
+    }
+}

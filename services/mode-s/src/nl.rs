@@ -4,7 +4,7 @@
 //! processor only compares integers; a test holds the table against the formula and against every latitude that CPR can encode
 //! nearest to a step, so that rounding to 1e-7 degrees never changes the answer: for that the step to NL 41 is one unit higher than
 //! the rounded formula, because a surface latitude lies 0.7 units below the true step and rounds onto it.
-//! Source: DO-260B A.1.7.2 d (formula).
+//! Source: the formula as "The 1090 Megahertz Riddle" prints it, chapter on CPR.
 
 /// Entry i: the latitude in 1e-7 degrees below which NL is at least i + 2. At exactly 87° NL is still 2.
 #[rustfmt::skip]

@@ -10,8 +10,8 @@
 //! | 0, 4, 5, 16, 20, 21 | AP | any | `Address`: true only if that aircraft is known from elsewhere |
 //! | else | – | – | `Unjudged` |
 //!
-//! Interrogator code: PI's low seven bits are CL and IC. CL 0 has II 0-15 and CL 1-4 has SI 1-63, so codes end at 79 (Annex 10
-//! Volume IV, 3.1.2.5.2.1.3). CL 5-7 mean nothing: such a residual is a broken frame.
+//! Interrogator code: PI's low seven bits are CL and IC. CL 0 has II 0-15 and CL 1-4 has SI 1-63, so codes end at 79 (ICAO
+//! Annex 10 Volume IV). CL 5-7 mean nothing: such a residual is a broken frame.
 
 use crate::address::{Address, Icao};
 use crate::frame::Frame;

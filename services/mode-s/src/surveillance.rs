@@ -18,7 +18,7 @@
 //! | 6 | level 2 or more, either |
 //! | 7 | DR not 0, or FS 2-5: either |
 //!
-//! Source: Annex 10 Volume IV, 3.1.2.6.5.1 (FS), 3.1.2.5.2.2.1 (CA), 3.1.2.8.2.1 (VS).
+//! Source: ICAO Annex 10 Volume IV (the FS, CA and VS fields).
 
 /// The FS field of DF4, 5, 20 and 21, 0-7.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +64,43 @@ impl Capability {
             4 => Some(true),
             5 => Some(false),
             _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flight_status_rows() {
+        let (yes, no) = (Some(true), Some(false));
+        for (fs, on_ground, alert, ident) in [
+            (0, no, no, no),
+            (1, yes, no, no),
+            (2, no, yes, no),
+            (3, yes, yes, no),
+            (4, None, yes, yes),
+            (5, None, no, yes),
+            (6, None, None, None),
+            (7, None, None, None),
+        ] {
+            let status = FlightStatus(fs);
+            assert_eq!(status.on_ground(), on_ground, "FS {fs}");
+            assert_eq!(status.alert(), alert, "FS {fs}");
+            assert_eq!(status.ident(), ident, "FS {fs}");
+        }
+    }
+
+    #[test]
+    fn only_capabilities_4_and_5_tell_the_ground() {
+        for ca in 0..8 {
+            let expected = match ca {
+                4 => Some(true),
+                5 => Some(false),
+                _ => None,
+            };
+            assert_eq!(Capability(ca).on_ground(), expected, "CA {ca}");
         }
     }
 }

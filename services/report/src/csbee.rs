@@ -79,7 +79,7 @@ pub fn aircraft(aircraft: &Aircraft, now_ms: u64, out: &mut [u8]) -> Result<usiz
     let track = aircraft.track(now_ms).map(|t| t.whole_degrees());
     decimal_field(&mut line, track.map(i32::from))?;
     let speed = aircraft.ground_speed_eighths(now_ms);
-    decimal_field(&mut line, speed.map(|eighths| (i32::from(eighths) + 4) / 8))?;
+    decimal_field(&mut line, speed.map(knots))?;
     let rate = aircraft.vertical_rate(now_ms);
     decimal_field(&mut line, rate.map(|rate| i32::from(rate.feet_per_minute)))?;
     // SIGS, SIGQ, ACFPS
@@ -119,6 +119,11 @@ fn end(mut line: Text<'_>) -> Result<usize, Full> {
     line.hex(u32::from(crc), 4)?;
     line.bytes(b"\r\n")?;
     Ok(line.len())
+}
+
+/// Whole knots of eighths, rounded.
+fn knots(eighths: u16) -> i32 {
+    (i32::from(eighths) + 4) / 8
 }
 
 /// A comma and a decimal integer.

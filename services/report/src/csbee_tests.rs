@@ -183,3 +183,36 @@ fn the_longest_lines_fit() {
         assert_eq!(statistics(&most, &mut out[..short]), Err(Full));
     }
 }
+
+#[test]
+fn ident_and_alert_flags_after_a_reply_of_the_same_aircraft() {
+    // The published identity reply with FS 4 (alert and SPI, on the ground or not) and its parity made right for 4B18FF.
+    let mut reply = [0x2C, 0, 0x1B, 0x3A, 0, 0, 0];
+    let parity = mode_s::crc24::remainder(&reply[..4]) ^ 0x4B18FF;
+    reply[4..].copy_from_slice(&parity.to_be_bytes()[1..]);
+    let hex: String = reply
+        .iter()
+        .map(|byte| std::format!("{byte:02X}"))
+        .collect();
+    assert_eq!(
+        line_after(&["5D4B18FFFC710B", &hex]),
+        "#A:4B18FF,C01,,3751,,,,,,,,,,,,2,,"
+    );
+}
+
+#[test]
+fn nacv_stands_in_bits_5_to_7() {
+    // The published velocity with NACv 2.
+    let velocity = "8D3944ED9914580EA0BC818E26C6";
+    let line = line_after(&[velocity]);
+    assert_eq!(line.split(',').nth(16), Some("40"));
+}
+
+#[test]
+fn surface_speed_is_rounded_to_whole_knots() {
+    // Movement 42 is 18 kt, 140.625°. Half a knot rounds up.
+    let line = line_after(&["8C4841753AAB238733C8CD4020B1"]);
+    let fields: Vec<&str> = line.split(',').collect();
+    assert_eq!((fields[1], fields[9], fields[10]), ("300000", "141", "18"));
+    assert_eq!([knots(3), knots(4), knots(11), knots(12)], [0, 1, 1, 2]);
+}

@@ -7,7 +7,7 @@
 //! | C (2) | none | emergency vehicle | service vehicle | point obstacle | cluster obstacle | line obstacle | reserved | reserved |
 //! | D (1) | none | reserved … | | | | | | |
 //!
-//! Source: DO-260B 2.2.3.2.5.2 (the sets), the ADSBee 1090 document 4.1.1.2 (its numbers; lighter-than-air, which it forgets, is 2).
+//! Source: "The 1090 Megahertz Riddle" (the sets), the ADSBee 1090 document 4.1.1.2 (its numbers; lighter-than-air, which it forgets, is 2).
 
 use mode_s::Category;
 

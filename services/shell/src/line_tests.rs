@@ -1,7 +1,7 @@
 //! Byte streams as a port delivers them.
 
 use super::*;
-use crate::ports::{Port, Protocol, Uart};
+use crate::ports::{HIGHEST_BAUD, Port, Protocol, Uart};
 use proptest::prelude::*;
 use std::vec::Vec;
 
@@ -44,6 +44,13 @@ fn every_request() {
             Request::SetBaudRate {
                 uart: Some(Uart::Comms),
                 baud: Some(115_200),
+            },
+        ),
+        (
+            "AT+BAUDRATE=COMMS,3000000",
+            Request::SetBaudRate {
+                uart: Some(Uart::Comms),
+                baud: Some(HIGHEST_BAUD),
             },
         ),
         (
@@ -143,6 +150,8 @@ fn binary_bytes_are_never_answered() {
 fn a_command_right_behind_binary_bytes_is_read() {
     assert_eq!(told(b"\x1a3\x80\xfeAAT+HELP\n"), [Ok(Request::Help)]);
     assert_eq!(told(b"AT+PROT\x00AT+HELP\n"), [Ok(Request::Help)]);
+    // The letters of the prefix must stand together.
+    assert_eq!(told(b"\x80A-T-+HELP\n"), []);
 }
 
 #[test]

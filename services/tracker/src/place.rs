@@ -21,9 +21,9 @@ use crate::counters::PositionOutcome;
 
 /// Age at which a shown place is no longer told nor used to decode others, ms.
 const PLACE_LIFE_MS: u32 = 60_000;
-/// Most time between the halves of an airborne pair, ms (DO-260B A.1.7.7: 10 s).
+/// Most time between the halves of an airborne pair, ms (10 s is the rule of DO-260B).
 const AIRBORNE_PAIR_MS: u32 = 10_000;
-/// Most time between the halves of a surface pair, ms (DO-260B A.1.7.8: 25 s at taxiing speeds above 25 kt, which covers slower).
+/// Most time between the halves of a surface pair, ms (25 s is the rule of DO-260B above 25 kt, 50 s below; the shorter serves both).
 const SURFACE_PAIR_MS: u32 = 25_000;
 /// Implausible positions in a row after which the shown place is given up.
 const REFUSALS_TO_GIVE_UP: u8 = 4;
@@ -169,7 +169,6 @@ impl Places {
         match candidate {
             Some(candidate) if is_within(candidate, place, reach) => {
                 self.shown.set(place, at_ms);
-                self.candidate.clear();
                 self.refusals = 0;
                 PositionOutcome::Shown
             }

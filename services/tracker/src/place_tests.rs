@@ -26,7 +26,7 @@ fn at(latitude: f64, longitude: f64) -> Position {
     }
 }
 
-/// The encoding equations of DO-260B A.1.7.3.
+/// The standard's encoding equations.
 fn encode(kind: CprKind, format: CprFormat, place: Position) -> Cpr {
     let span = if kind == CprKind::Airborne {
         360.0
@@ -256,4 +256,22 @@ fn distances_agree_with_the_sphere_to_a_percent() {
         assert!(is_within(a, b, (metres * 1.01) as u64), "{a:?} {b:?}");
         assert!(!is_within(a, b, (metres * 0.99) as u64), "{a:?} {b:?}");
     }
+}
+
+#[test]
+fn two_pairs_that_disagree_are_refused_and_the_later_is_the_new_candidate() {
+    let (here, there) = (at(52.1, 4.3), at(48.0, 11.0));
+    let mut places = Places::NONE;
+    let reports = [
+        (0.0, EVEN, here),
+        (0.5, ODD, here),
+        (1.0, EVEN, there),
+        (1.5, ODD, there),
+        (2.0, EVEN, there),
+        (2.5, ODD, there),
+    ];
+    assert_eq!(
+        fly(&mut places, &reports),
+        [Waiting, Waiting, Waiting, Refused, Waiting, Shown]
+    );
 }

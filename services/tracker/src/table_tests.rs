@@ -205,6 +205,128 @@ fn what_is_older_than_a_minute_is_not_told() {
     assert_eq!(aircraft.vertical_rate(61_000), None);
 }
 
+/// The published pairs: airborne near Hawaii, and on the surface at Schiphol.
+const HAWAII: [&str; 2] = [
+    "8da6147f5859f18cdf4d244ac6fa",
+    "8da6147f585b05533e2ba73e43cb",
+];
+const SCHIPHOL: [&str; 2] = [
+    "8C4841753AAB238733C8CD4020B1",
+    "8C4841753A8A35323FAEBDAC702D",
+];
+
+#[test]
+fn surface_speed_track_and_ground() {
+    let mut tracker = Tracker::<3>::new();
+    tracker.on_frame(&message(SCHIPHOL[0]), 0);
+    let aircraft = tracker.find(icao(0x484175)).unwrap();
+    assert_eq!(aircraft.on_ground(), Some(true));
+    assert_eq!(aircraft.ground_speed_eighths(0), Some(18 * 8));
+    assert!(aircraft.track(0).is_some());
+    tracker.on_frame(&message("8D485020994409940838175B284F"), 0);
+    let aircraft = tracker.find(icao(0x485020)).unwrap();
+    assert_eq!(aircraft.on_ground(), Some(false));
+    assert_eq!(aircraft.ground_speed_eighths(0), Some(159 * 8));
+}
+
+#[test]
+fn surveillance_status_of_a_position_sets_ident_or_alert() {
+    let mut tracker = Tracker::<3>::new();
+    for (status, ident, alert) in [
+        (0, false, false),
+        (1, false, true),
+        (2, false, true),
+        (3, true, false),
+    ] {
+        let mut bytes = [0; 14];
+        bytes[..5].copy_from_slice(&[0x8D, 0, 0, 1, 11 << 3 | status << 1]);
+        let parity = crc24::remainder(&bytes[..11]).to_be_bytes();
+        bytes[11..].copy_from_slice(&parity[1..]);
+        let frame = Frame::from_bytes(&bytes).unwrap();
+        tracker.on_frame(&Message::decode(&frame), 0);
+        let aircraft = tracker.find(icao(1)).unwrap();
+        assert_eq!(
+            (aircraft.ident(0), aircraft.alert(0)),
+            (ident, alert),
+            "SS {status}"
+        );
+    }
+}
+
+#[test]
+fn an_aircraft_in_the_air_is_the_reference_for_those_on_the_surface() {
+    let surface = |tracker: &mut Tracker<3>| {
+        for at in 0..4 {
+            tracker.on_frame(&message(SCHIPHOL[at % 2]), 2_000 + 100 * at as u64);
+        }
+        tracker.find(icao(0x484175)).unwrap().position(2_400)
+    };
+    assert_eq!(surface(&mut Tracker::new()), None);
+
+    let mut tracker = Tracker::new();
+    for at in 0..4 {
+        tracker.on_frame(&message(HAWAII[at % 2]), 100 * at as u64);
+    }
+    // The pair is decoded near Hawaii: a wrong quarter, but a quarter of this reference.
+    let place = surface(&mut tracker).unwrap();
+    assert!((place.latitude - 523_206_070).abs() < 100, "{place:?}");
+    let quarter = (place.longitude - 47_347_350).rem_euclid(900_000_000);
+    assert!(!(100..899_999_900).contains(&quarter), "{place:?}");
+    assert!((place.longitude + 1_565_328_500).abs() < 450_000_000);
+}
+
+#[test]
+fn the_receivers_place_is_a_reference_and_a_limit() {
+    let amsterdam = Position {
+        latitude: 519_900_000,
+        longitude: 43_750_000,
+    };
+    let mut tracker = Tracker::<3>::new();
+    tracker.set_receiver(Some(amsterdam));
+    for at in 0..4 {
+        tracker.on_frame(&message(SCHIPHOL[at % 2]), 100 * at as u64);
+        tracker.on_frame(&message(HAWAII[at % 2]), 100 * at as u64);
+    }
+    let place = |address| tracker.find(icao(address)).unwrap().position(400);
+    let schiphol = place(0x484175).unwrap();
+    assert!((schiphol.longitude - 47_347_350).abs() < 100);
+    assert_eq!(place(0xA6147F), None);
+    assert_balanced(&tracker);
+}
+
+#[test]
+fn airspeed_and_heading_are_no_ground_speed_and_track() {
+    let mut tracker = Tracker::<3>::new();
+    tracker.on_frame(&message("8DA05F219B06B6AF189400CBC33F"), 0);
+    let aircraft = tracker.find(icao(0xA05F21)).unwrap();
+    assert_eq!(aircraft.heading(0).map(|heading| heading.0), Some(24_398));
+    assert_eq!(aircraft.airspeed(0).map(|speed| speed.knots), Some(375));
+    assert_eq!(aircraft.track(0), None);
+    assert_eq!(aircraft.ground_speed_eighths(0), None);
+    assert_eq!(aircraft.nacv(0), Some(0));
+}
+
+#[test]
+fn an_old_difference_gives_no_gnss_height() {
+    let altitude = |at_ms| {
+        let reply = Message {
+            df: Df::ALTITUDE_REPLY,
+            parity: Parity::Address(Icao(0x485020)),
+            body: Body::AltitudeReply {
+                flight_status: FlightStatus(0),
+                altitude: Some(AltitudeFt(1_000)),
+            },
+        };
+        let mut tracker = Tracker::<3>::new();
+        tracker.on_frame(&message("8D485020994409940838175B284F"), 1_000);
+        tracker.on_frame(&reply, at_ms);
+        let aircraft = tracker.find(icao(0x485020)).unwrap();
+        aircraft.gnss_altitude(at_ms)
+    };
+    assert_eq!(altitude(11_000), Some(AltitudeFt(1_550)));
+    assert_eq!(altitude(11_001), None);
+}
+
 /// One step of the model test.
 #[derive(Clone, Copy, Debug)]
 enum Step {

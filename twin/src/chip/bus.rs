@@ -116,6 +116,10 @@ pub struct Bus {
     pub core_time: u64,
     pub active: usize,
     pub active_pc: u32,
+    /// Something in the last instruction wants more than the inner loop does.
+    pub attention: bool,
+    /// The last instruction was in ROM.
+    pub rom_called: bool,
     /// Instructions core 1 executed, and data it read, from flash since it was started by the program.
     pub core1_xip: u64,
     /// The address of the first of them.
@@ -177,6 +181,8 @@ impl Bus {
             core_time: 0,
             active: 0,
             active_pc: 0,
+            attention: false,
+            rom_called: false,
             core1_xip: 0,
             core1_xip_first: 0,
             ppb: [Ppb::new(), Ppb::new()],
@@ -476,18 +482,18 @@ impl Bus {
     }
 
     /// A core reads memory: counts core 1's use of flash and remembers where code lies in SRAM.
-    #[inline]
-    fn core_memory(&mut self, address: u32, size: usize) -> Option<u32> {
+    #[inline(always)]
+    fn core_memory<const SIZE: usize>(&mut self, address: u32) -> Option<[u8; SIZE]> {
+        if let Some(at) = self.sram_offset(address, SIZE) {
+            if address & !3 == self.active_pc & !3 {
+                self.note_code(at);
+            }
+            return self.sram[at..at + SIZE].try_into().ok();
+        }
         if address >> 28 == 1 && self.active == 1 {
             self.note_core1_xip(address);
         }
-        if address >> 28 == 2 && address & !3 == self.active_pc & !3 {
-            self.note_code(address);
-        }
-        let bytes = self.memory(address, size)?;
-        let mut word = [0; 4];
-        word[..size].copy_from_slice(bytes);
-        Some(u32::from_le_bytes(word))
+        self.memory(address, SIZE)?.try_into().ok()
     }
 
     #[cold]
@@ -498,13 +504,10 @@ impl Bus {
         self.core1_xip += 1;
     }
 
-    #[inline]
-    fn note_code(&mut self, address: u32) {
-        if let Some(at) = self.sram_offset(address, 2) {
-            self.code[at / CODE_GRANULE] = true;
-            let next = ((at + 2) / CODE_GRANULE).min(self.code.len() - 1);
-            self.code[next] = true;
-        }
+    fn note_code(&mut self, at: usize) {
+        self.code[at / CODE_GRANULE] = true;
+        let next = ((at + 2) / CODE_GRANULE).min(self.code.len() - 1);
+        self.code[next] = true;
     }
 
     #[inline]
@@ -512,6 +515,7 @@ impl Bus {
         if self.code[at / CODE_GRANULE] {
             self.stale_code.push(address & !3);
             self.stale_code.push((address & !3) + 2);
+            self.attention = true;
         }
     }
 
@@ -1059,6 +1063,7 @@ impl Bus {
                 return 0;
             }
         }
+        self.attention = true;
         self.advance(self.core_time);
         let value = self.peripheral_read(address);
         if matches!(address & 0xffff_f000, 0x4003_4000 | 0x4003_8000)
@@ -1079,6 +1084,7 @@ impl Bus {
                 return;
             }
         }
+        self.attention = true;
         self.advance(self.core_time);
         if size == 4 {
             self.peripheral_write(address, value);
@@ -1091,24 +1097,24 @@ impl Bus {
 impl CoreBus for Bus {
     #[inline]
     fn read8(&mut self, address: u32) -> u8 {
-        match self.core_memory(address, 1) {
-            Some(v) => v as u8,
+        match self.core_memory::<1>(address) {
+            Some([byte]) => byte,
             None => (self.slow_read(address & !3) >> (8 * (address & 3))) as u8,
         }
     }
 
     #[inline]
     fn read16(&mut self, address: u32) -> u16 {
-        match self.core_memory(address, 2) {
-            Some(v) => v as u16,
+        match self.core_memory(address) {
+            Some(bytes) => u16::from_le_bytes(bytes),
             None => (self.slow_read(address & !3) >> (8 * (address & 2))) as u16,
         }
     }
 
     #[inline]
     fn read32(&mut self, address: u32) -> u32 {
-        match self.core_memory(address, 4) {
-            Some(v) => v,
+        match self.core_memory(address) {
+            Some(bytes) => u32::from_le_bytes(bytes),
             None => self.slow_read(address),
         }
     }
@@ -1174,6 +1180,8 @@ impl CoreBus for Bus {
 
     #[inline]
     fn ppb_mut(&mut self, core: usize) -> &mut Ppb {
+        // Exceptions are entered and left through here.
+        self.attention = true;
         &mut self.ppb[core]
     }
 
@@ -1202,9 +1210,15 @@ impl CoreBus for Bus {
 
     fn set_wfe_waiting(&mut self, core: usize, waiting: bool) {
         self.wfe[core] = waiting;
+        self.attention = true;
     }
 
     fn signal_sev(&mut self) {
+        if (self.active_pc as usize) < ROM {
+            self.rom_called = true;
+            self.attention = true;
+            return;
+        }
         self.signal_event();
     }
 }

@@ -104,20 +104,23 @@ impl Dma {
 
     /// The busy channel whose turn it is among those that `ready` accepts; high-priority channels first.
     pub fn pick(&self, ready: impl Fn(u32) -> bool) -> Option<usize> {
-        for high in [1, 0] {
-            for k in 0..CHANNELS {
-                let n = (self.turn + k) % CHANNELS;
+        let mut low = None;
+        // From the channel whose turn it is upward, then from the bottom.
+        let below = (1 << self.turn) - 1;
+        for mut rest in [self.busy & !below, self.busy & below] {
+            while rest != 0 {
+                let n = rest.trailing_zeros() as usize;
+                rest &= rest - 1;
                 let c = &self.channels[n];
-                if self.busy & (1 << n) != 0
-                    && c.enabled()
-                    && (c.ctrl >> 1) & 1 == high
-                    && ready(c.dreq())
-                {
-                    return Some(n);
+                if c.enabled() && ready(c.dreq()) {
+                    if c.ctrl & 2 != 0 {
+                        return Some(n);
+                    }
+                    low = low.or(Some(n));
                 }
             }
         }
-        None
+        low
     }
 
     /// Moves channel `n` on after one transfer.

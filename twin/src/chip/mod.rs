@@ -25,6 +25,7 @@ use bus::{Bus, Fault, ResetCause};
 use flash::Flash;
 use rp2040_emu::CortexM0Plus;
 use rp2040_emu::core::CoreBus;
+use std::collections::BTreeMap;
 
 /// Most cycles a core runs ahead of the peripherals and of the other core.
 const SLICE: u64 = 64;
@@ -73,6 +74,8 @@ pub struct Chip {
     launch: Vec<u32>,
     /// Resets since power-on, the power-on first.
     pub resets: Vec<ResetEvent>,
+    /// Cycles spent at each instruction address, a table a core, while profiling.
+    profile: Option<Box<[BTreeMap<u32, u64>; 2]>>,
 }
 
 impl Chip {
@@ -91,6 +94,7 @@ impl Chip {
             bus,
             launch: Vec::new(),
             resets: Vec::new(),
+            profile: None,
         };
         chip.reset(ResetCause::PowerOn);
         chip
@@ -104,6 +108,29 @@ impl Chip {
     /// Busy cycles of each core since power-on.
     pub fn busy_cycles(&self) -> [u64; 2] {
         [self.cores[0].busy, self.cores[1].busy]
+    }
+
+    /// Puts `code` into SRAM at `at` and lets `core` run it with interrupts masked, `argument` in r0: for benchmarks and instruction tests.
+    pub fn take_over(&mut self, core: usize, at: u32, code: &[u8], argument: u32) {
+        let offset = (at - 0x2000_0000) as usize;
+        self.bus.sram[offset..offset + code.len()].copy_from_slice(code);
+        let time = self.bus.now;
+        let taken = &mut self.cores[core];
+        taken.cpu = CortexM0Plus::with_id(core as u8);
+        taken.cpu.regs.primask = 1;
+        taken.cpu.regs.r[0] = argument;
+        taken.cpu.regs.set_pc(at);
+        taken.time = time;
+        taken.stopped = false;
+        self.bus.asleep[core] = false;
+        self.bus.wfe[core] = false;
+        self.bus.wake_at[core] = None;
+    }
+
+    /// Starts to count cycles by instruction address, or takes what was counted for one core so far.
+    pub fn profile(&mut self, core: usize) -> BTreeMap<u32, u64> {
+        let tables = self.profile.get_or_insert_default();
+        std::mem::take(&mut tables[core])
     }
 
     /// Cycles each core has accounted for; differs from [`Chip::now`] by at most a slice.
@@ -193,30 +220,28 @@ impl Chip {
     fn run_core(&mut self, k: usize, end: u64) {
         let start = self.cores[k].time;
         self.bus.active = k;
-        while self.cores[k].time < end {
+        while self.cores[k].time < end && !self.stops_slice() {
             if self.bus.ppb[k].active != 0 && self.bus.nvic[k].pending_and_enabled() != 0 {
                 self.preempt(k);
             }
-            if self.cores[k].cpu.regs.pc() < bus::ROM as u32 {
-                self.call_rom(k);
-                if self.bus.fault.is_some() {
-                    break;
-                }
-                continue;
+            let before = self.bus.ppb[k].active;
+            if self.profile.is_some() {
+                self.step_profiled(k, end);
+            } else {
+                self.step(k, end);
             }
-            let Core { cpu, time, .. } = &mut self.cores[k];
-            self.bus.core_time = *time;
-            let active = self.bus.ppb[k].active;
-            *time += u64::from(cpu.step(&mut self.bus).max(1));
-            if active != self.bus.ppb[k].active {
+            self.bus.attention = false;
+            if std::mem::take(&mut self.bus.rom_called) {
+                self.call_rom(k);
+            }
+            if before != self.bus.ppb[k].active {
                 // Exception entry and return set the event register (ARMv6-M B1.5.18).
                 self.bus.event[k] = true;
-                if cpu.is_in_hardfault() {
+                if self.cores[k].cpu.is_in_hardfault() {
                     let pc = self.faulting_pc(k);
                     self.bus
                         .fault
                         .get_or_insert(Fault::HardFault { core: k, pc });
-                    break;
                 }
             }
             if !self.bus.stale_code.is_empty() {
@@ -233,16 +258,40 @@ impl Chip {
                 }
                 break;
             }
-            if self.bus.reset_request.is_some()
-                || self.bus.core1_forced_off
-                || self.bus.core1_launching
-                || self.bus.fault.is_some()
-            {
-                break;
-            }
         }
         let ran = self.cores[k].time - start;
         self.cores[k].busy += ran;
+    }
+
+    /// Something happened that the slice of neither core may go past.
+    fn stops_slice(&self) -> bool {
+        self.bus.reset_request.is_some()
+            || self.bus.core1_forced_off
+            || self.bus.core1_launching
+            || self.bus.fault.is_some()
+    }
+
+    /// The inner loop: instructions until cycle `end`, a sleep, or an access that wants attention.
+    fn step(&mut self, k: usize, end: u64) {
+        let core = &mut self.cores[k];
+        let bus = &mut self.bus;
+        while core.time < end {
+            bus.core_time = core.time;
+            core.time += u64::from(core.cpu.step(bus).max(1));
+            if bus.attention || core.cpu.is_halted() {
+                return;
+            }
+        }
+    }
+
+    /// The same, an instruction at a time, counted.
+    fn step_profiled(&mut self, k: usize, end: u64) {
+        let before = self.cores[k].time;
+        self.step(k, end.min(before + 1));
+        let cycles = self.cores[k].time - before;
+        if let Some(profile) = &mut self.profile {
+            *profile[k].entry(self.bus.active_pc).or_default() += cycles;
+        }
     }
 
     /// The stacked return address of the exception a core has just entered.

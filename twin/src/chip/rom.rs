@@ -28,8 +28,14 @@ const CALL_CYCLES: u64 = 20;
 /// Cycles a byte of the memory functions takes (word loops of the ROM: about 5 cycles for 4 bytes, plus overhead).
 const CYCLES_PER_WORD: u64 = 5;
 
-/// Fills in the header.
+/// `SEV`, which every other halfword of the ROM holds: a core that branches there executes one, and that is how the call is noticed.
+const SEV: [u8; 2] = [0x40, 0xbf];
+
+/// Fills in the ROM.
 pub fn write_header(rom: &mut [u8]) {
+    for halfword in rom.chunks_exact_mut(2) {
+        halfword.copy_from_slice(&SEV);
+    }
     rom[0x10..0x14].copy_from_slice(b"Mu\x01\x02");
     rom[0x14..0x16].copy_from_slice(&0x0080u16.to_le_bytes());
     rom[0x16..0x18].copy_from_slice(&0x00c0u16.to_le_bytes());
@@ -41,7 +47,7 @@ impl Chip {
     #[cold]
     pub(super) fn call_rom(&mut self, k: usize) {
         let core = &self.cores[k];
-        let address = core.cpu.regs.pc();
+        let address = self.bus.active_pc;
         let argument = [0, 1, 2, 3].map(|n| core.cpu.regs.r[n]);
         let mut cycles = CALL_CYCLES;
         let result = if address == LOOKUP {

@@ -60,8 +60,7 @@ impl Chain {
             .copied()
             .filter(|first| dbm.iter().all(|dbm| dbm == first));
         dbm.iter_mut().for_each(|level| *level = millivolt(*level));
-        self.detector.follow(dbm);
-        self.threshold.compare(dbm);
+        self.threshold.compare(&mut self.detector, dbm);
         let changed = edges.len();
         for part in dbm.chunks(64) {
             self.switch(part, edges);

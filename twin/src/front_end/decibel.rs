@@ -2,7 +2,7 @@
 //! in the last digit.
 
 /// 10 log10(2).
-const DB_PER_OCTAVE: f32 = 3.010_299_9;
+const DB_PER_OCTAVE: f32 = 3.010_3;
 
 /// 10 log10 of a power ratio. Zero and below read as -200 dB. Good to 0.001 dB.
 #[inline(always)]

@@ -23,6 +23,7 @@ pub fn millivolt(dbm: f32) -> f32 {
 }
 
 /// The detector's output.
+#[derive(Clone)]
 pub struct Detector {
     up: f32,
     down: f32,
@@ -43,21 +44,16 @@ impl Detector {
         self.mv
     }
 
-    /// Replaces what the detector aims at by its output, sample by sample.
+    /// The output a step later.
     ///
     /// The quicker of the two ways is the higher one both up and down, so the greater of both is the right one, without a branch.
-    pub fn follow(&mut self, mv: &mut [f32]) {
-        let (up, down) = (self.up, self.down);
-        let mut now = self.mv;
-        for sample in mv {
-            let aim = *sample;
-            let quick = now * (1.0 - up) + aim * up;
-            let slow = now * (1.0 - down) + aim * down;
-            // Not `f32::max`: that also cares for NaN, on the one path whose length is the model's speed.
-            now = if quick > slow { quick } else { slow };
-            *sample = now;
-        }
-        self.mv = now;
+    #[inline(always)]
+    pub fn step(&mut self, aim_mv: f32) -> f32 {
+        let quick = self.mv * (1.0 - self.up) + aim_mv * self.up;
+        let slow = self.mv * (1.0 - self.down) + aim_mv * self.down;
+        // Not `f32::max`: that also cares for NaN, on the one path whose length is the model's speed.
+        self.mv = if quick > slow { quick } else { slow };
+        self.mv
     }
 }
 
@@ -77,9 +73,7 @@ mod tests {
         let mut time = |aim: f32, from: f32, to: f32| {
             let (mut start, mut end) = (0, 0);
             for step in 0..20_000 {
-                let mut mv = [aim];
-                detector.follow(&mut mv);
-                let [mv] = mv;
+                let mv = detector.step(aim);
                 let beyond = |mark: f32| if to > from { mv > mark } else { mv < mark };
                 start = if beyond(from) { start } else { step };
                 end = if beyond(to) { end } else { step };

@@ -1,7 +1,14 @@
 //! Band-limited interpolation from the recording's rate to the internal rate.
 //!
 //! A recording at 2 Msps has two samples a half-bit: a straight line between magnitudes would round every pulse off, so I and Q are
-//! interpolated with a windowed sinc. Any rate: the kernel is tabled at 128 places between two samples and the nearest one is taken.
+//! interpolated with a windowed sinc. Frames of `modes1.bin` behind the RC-following slicer, by what is interpolated:
+//!
+//! | | windowed sinc | straight line |
+//! |---|---|---|
+//! | I and Q | 332 | 242 |
+//! | magnitude | 304 | 213 |
+//!
+//! Any rate: the kernel is tabled at 128 places between two samples and the nearest one is taken.
 
 use super::noise::tap;
 

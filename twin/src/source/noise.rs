@@ -63,7 +63,7 @@ impl Noise {
     /// Where the next `count` samples stand in the loop; at most what is left of the stretch.
     fn take(&mut self, count: usize) -> std::ops::Range<usize> {
         if self.left == 0 {
-            self.at = self.random.next() as usize % (LOOP - STRETCH as usize);
+            self.at = self.random.word() as usize % (LOOP - STRETCH as usize);
             self.left = STRETCH;
         }
         let count = count.min(self.left as usize);

@@ -9,7 +9,7 @@ impl Random {
         Self(seed)
     }
 
-    pub fn next(&mut self) -> u64 {
+    pub fn word(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -19,14 +19,14 @@ impl Random {
 
     /// Uniform in 0 to 1.
     pub fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+        (self.word() >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// Normal, mean 0 and variance 1: twelve uniform numbers added, so it ends at six sigma.
     pub fn normal(&mut self) -> f64 {
         let mut sum = 0.0;
         for _ in 0..3 {
-            let word = self.next();
+            let word = self.word();
             for part in 0..4 {
                 sum += (f64::from((word >> (16 * part)) as u16) + 0.5) / 65_536.0;
             }

@@ -4,8 +4,9 @@
 //!   1    6  8 9        21 22 23          40          56
 //!   | TC |SS|B| altitude|T |F | CPR lat  | CPR lon    |
 //! ```
-//! TC 9-18 carry barometric altitude, TC 20-22 the GNSS height above the ellipsoid in the same 12-bit code. TC also tells how far
-//! the position can be wrong. Source: DO-260B 2.2.3.2.3; NIC from its table 2-14 with the supplements taken as 0, which gives the
+//! TC 9-18 carry barometric altitude, TC 20-22 the GNSS height above the ellipsoid in the same 12-bit code (some open decoders read
+//! metres there; DO-260 gives one coding for both). TC also tells how far
+//! the position can be wrong. Source: "The 1090 Megahertz Riddle"; NIC from DO-260B's table by type code with the supplements taken as 0, which gives the
 //! lower of the possible values.
 
 use crate::altitude::{Ac12, AltitudeFt};
@@ -100,5 +101,53 @@ const fn nic(type_code: u8) -> u8 {
         16 => 2,
         17 => 1,
         _ => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Type code, SS and the 12 bits of 36 000 ft.
+    fn position(type_code: u8, status: u8) -> AirbornePosition {
+        let first = type_code << 3 | status << 1;
+        AirbornePosition::decode(MeBits([first, 0xB9, 0x80, 0, 0, 0, 0]))
+    }
+
+    #[test]
+    fn type_codes_from_20_carry_gnss_height() {
+        for (type_code, source) in [
+            (9, AltitudeSource::Barometric),
+            (18, AltitudeSource::Barometric),
+            (20, AltitudeSource::Gnss),
+            (22, AltitudeSource::Gnss),
+        ] {
+            let altitude = AltitudeFt(36_000);
+            assert_eq!(
+                position(type_code, 0).altitude,
+                Some(PositionAltitude { source, altitude }),
+                "TC {type_code}"
+            );
+        }
+    }
+
+    #[test]
+    fn nic_by_type_code_without_supplements() {
+        let nics = [11, 10, 8, 7, 6, 5, 4, 2, 1, 0];
+        for (type_code, nic) in (9..=18).zip(nics) {
+            assert_eq!(position(type_code, 0).nic, nic, "TC {type_code}");
+        }
+        for (type_code, nic) in (20..=22).zip([11, 10, 0]) {
+            assert_eq!(position(type_code, 0).nic, nic, "TC {type_code}");
+        }
+    }
+
+    #[test]
+    fn surveillance_status_and_no_position() {
+        for status in 0..4 {
+            let position = position(11, status);
+            assert_eq!(position.surveillance_status, status);
+            assert_eq!(position.cpr, None);
+        }
     }
 }

@@ -5,7 +5,7 @@
 //!   | TC |CA| eight characters of six bits each      |
 //! ```
 //! Characters: 1-26 are A-Z, 32 is a space, 48-57 are 0-9; the rest mean nothing. Category: TC 4 is set A, 3 B, 2 C, 1 D, with CA
-//! 0-7 inside. Source: DO-260B 2.2.3.2.5, Annex 10 Volume IV, 3.1.2.9.1.2 (the six-bit characters).
+//! 0-7 inside. Source: "The 1090 Megahertz Riddle", aircraft identification.
 
 use crate::frame::MeBits;
 
@@ -94,6 +94,9 @@ mod tests {
     fn blank_or_meaningless_characters_are_no_callsign() {
         let blank = MeBits([0x20, 0x82, 0x08, 0x20, 0x82, 0x08, 0x20]);
         assert_eq!(Identification::decode(blank).callsign, None);
+        // Code 58, one behind the digit 9.
+        let colon = MeBits([0x20, 58 << 2 | 2, 0x08, 0x20, 0x82, 0x08, 0x20]);
+        assert_eq!(Identification::decode(colon).callsign, None);
         let at_signs = MeBits([0x20, 0, 0, 0, 0, 0, 0]);
         assert_eq!(Identification::decode(at_signs).callsign, None);
     }

@@ -5,7 +5,7 @@
 //!   | TC | movement |S | track  |T |F | CPR lat  | CPR lon    |
 //! ```
 //! Movement is a scale with seven step widths from an eighth of a knot to five knots; each code is given here as the lower bound
-//! of its band. Source: DO-260B 2.2.3.2.4 and its table of movement.
+//! of its band. Source: "The 1090 Megahertz Riddle", surface position and its table of movement.
 
 use super::airborne_position::cpr;
 use crate::angle::CentiDegrees;

@@ -6,7 +6,7 @@
 //!                   |H| heading   |T| airspeed    |                                ST 3, 4
 //! ```
 //! Subtypes 2 and 4 are supersonic: speeds in steps of 4 kt. In every field 0 means "not available" and 1 means zero, so the value is
-//! the field less one. Source: DO-260B 2.2.3.2.6.
+//! the field less one. src: 0 GNSS, 1 barometric. Source: "The 1090 Megahertz Riddle", airborne velocity.
 
 use crate::angle::CentiDegrees;
 use crate::frame::MeBits;
