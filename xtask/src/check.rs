@@ -22,7 +22,14 @@ pub fn run() -> Result<(), String> {
     println!("check: lints, firmware crates");
     thumb::ensure_target()?;
     let mut clippy = cargo();
-    clippy.args(["clippy", "--quiet", "--target", "thumbv6m-none-eabi", "--profile", "firmware"]);
+    clippy.args([
+        "clippy",
+        "--quiet",
+        "--target",
+        "thumbv6m-none-eabi",
+        "--profile",
+        "firmware",
+    ]);
     for name in FIRMWARE {
         clippy.args(["-p", name]);
     }

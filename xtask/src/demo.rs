@@ -13,8 +13,19 @@ use crate::{fw, workspace};
 const SECONDS: &str = "60";
 /// Options of `squitter twin` that take a value; what follows them is no FILE.
 const WITH_VALUE: [&str; 13] = [
-    "--format", "--rate", "--slicer", "--full-scale", "--seconds", "--protocol", "--at", "--level", "--noise", "--seed", "--tcp",
-    "--image", "-o",
+    "--format",
+    "--rate",
+    "--slicer",
+    "--full-scale",
+    "--seconds",
+    "--protocol",
+    "--at",
+    "--level",
+    "--noise",
+    "--seed",
+    "--tcp",
+    "--image",
+    "-o",
 ];
 
 /// Runs it with the arguments that followed `demo`.
@@ -38,7 +49,10 @@ pub fn run(arguments: &[&str]) -> Result<(), String> {
     if !asks_for_help {
         if !has_file(arguments) {
             let log = log()?;
-            println!("playing {}", log.file_name().unwrap_or_default().to_string_lossy());
+            println!(
+                "playing {}",
+                log.file_name().unwrap_or_default().to_string_lossy()
+            );
             command.arg(log);
         }
         if !has_option(arguments, "--seconds") && !has_option(arguments, "--format") {
@@ -50,7 +64,11 @@ pub fn run(arguments: &[&str]) -> Result<(), String> {
 }
 
 fn has_option(arguments: &[&str], name: &str) -> bool {
-    arguments.iter().any(|a| *a == name || a.strip_prefix(name).is_some_and(|rest| rest.starts_with('=')))
+    arguments.iter().any(|a| {
+        *a == name
+            || a.strip_prefix(name)
+                .is_some_and(|rest| rest.starts_with('='))
+    })
 }
 
 /// Whether one of the arguments is a FILE.
@@ -73,20 +91,32 @@ pub fn log() -> Result<PathBuf, String> {
         .output()
         .map_err(|error| format!("cannot start cargo metadata: {error}"))?;
     if !output.status.success() {
-        return Err(format!("cargo metadata: {}", String::from_utf8_lossy(&output.stderr)));
+        return Err(format!(
+            "cargo metadata: {}",
+            String::from_utf8_lossy(&output.stderr)
+        ));
     }
-    let metadata: Value =
-        serde_json::from_slice(&output.stdout).map_err(|error| format!("cargo metadata: {error}"))?;
+    let metadata: Value = serde_json::from_slice(&output.stdout)
+        .map_err(|error| format!("cargo metadata: {error}"))?;
     let log = metadata["packages"]
         .as_array()
         .into_iter()
         .flatten()
         .find(|package| package["name"] == "rs1090")
         .and_then(|package| package["manifest_path"].as_str())
-        .and_then(|manifest| Some(PathBuf::from(manifest).parent()?.join("data/long_flight.csv")))
+        .and_then(|manifest| {
+            Some(
+                PathBuf::from(manifest)
+                    .parent()?
+                    .join("data/long_flight.csv"),
+            )
+        })
         .ok_or("the crate rs1090 is not among the dependencies")?;
     if !log.exists() {
-        return Err(format!("{} is missing from the crate rs1090", log.display()));
+        return Err(format!(
+            "{} is missing from the crate rs1090",
+            log.display()
+        ));
     }
     Ok(log)
 }

@@ -59,8 +59,8 @@ pub fn violations(graph: &Graph) -> Vec<String> {
         let needs = graph.needs.get(name).into_iter().flatten();
         if let Some(allowed) = allowed(folder) {
             for other in needs.filter_map(|n| Some((n, graph.ours.get(n)?))) {
-                let fits = |a: &&str| other.1 == a || (a.ends_with('/') && other.1.starts_with(**a));
-                if !allowed.iter().any(|a| fits(&a)) {
+                let fits = |a: &str| other.1 == a || (a.ends_with('/') && other.1.starts_with(a));
+                if !allowed.iter().any(|a| fits(a)) {
                     found.push(format!("{folder} depends on {} ({})", other.0, other.1));
                 }
             }
@@ -95,17 +95,23 @@ pub fn read() -> Result<Graph, String> {
         .output()
         .map_err(|error| format!("cannot start cargo metadata: {error}"))?;
     if !output.status.success() {
-        return Err(format!("cargo metadata: {}", String::from_utf8_lossy(&output.stderr)));
+        return Err(format!(
+            "cargo metadata: {}",
+            String::from_utf8_lossy(&output.stderr)
+        ));
     }
-    let metadata: Value =
-        serde_json::from_slice(&output.stdout).map_err(|error| format!("cargo metadata: {error}"))?;
+    let metadata: Value = serde_json::from_slice(&output.stdout)
+        .map_err(|error| format!("cargo metadata: {error}"))?;
     graph(&metadata).ok_or_else(|| "cargo metadata has another shape than expected".to_string())
 }
 
 fn graph(metadata: &Value) -> Option<Graph> {
     let root = metadata["workspace_root"].as_str()?;
-    let members: BTreeSet<&str> =
-        metadata["workspace_members"].as_array()?.iter().filter_map(Value::as_str).collect();
+    let members: BTreeSet<&str> = metadata["workspace_members"]
+        .as_array()?
+        .iter()
+        .filter_map(Value::as_str)
+        .collect();
     let mut names = BTreeMap::new();
     let mut ours = BTreeMap::new();
     for package in metadata["packages"].as_array()? {
@@ -113,7 +119,10 @@ fn graph(metadata: &Value) -> Option<Graph> {
         names.insert(id, name);
         if members.contains(id) {
             let manifest = package["manifest_path"].as_str()?;
-            let folder = manifest.strip_prefix(root)?.trim_start_matches('/').strip_suffix("/Cargo.toml")?;
+            let folder = manifest
+                .strip_prefix(root)?
+                .trim_start_matches('/')
+                .strip_suffix("/Cargo.toml")?;
             ours.insert(name.to_string(), folder.to_string());
         }
     }
@@ -122,7 +131,10 @@ fn graph(metadata: &Value) -> Option<Graph> {
         let mut set = BTreeSet::new();
         for dependency in node["deps"].as_array()? {
             // A kind of null is a normal dependency.
-            let normal = dependency["dep_kinds"].as_array()?.iter().any(|k| k["kind"].is_null());
+            let normal = dependency["dep_kinds"]
+                .as_array()?
+                .iter()
+                .any(|k| k["kind"].is_null());
             if normal {
                 set.insert(names.get(dependency["pkg"].as_str()?)?.to_string());
             }
@@ -138,7 +150,10 @@ pub fn check() -> Result<(), String> {
     if found.is_empty() {
         return Ok(());
     }
-    Err(format!("dependency edges that the architecture forbids:\n  {}", found.join("\n  ")))
+    Err(format!(
+        "dependency edges that the architecture forbids:\n  {}",
+        found.join("\n  ")
+    ))
 }
 
 #[cfg(test)]
@@ -156,9 +171,15 @@ mod tests {
         ];
         let mut needs: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
         for (from, to) in edges {
-            needs.entry(from.to_string()).or_default().insert(to.to_string());
+            needs
+                .entry(from.to_string())
+                .or_default()
+                .insert(to.to_string());
         }
-        Graph { ours: folders.map(|(n, f)| (n.to_string(), f.to_string())).into(), needs }
+        Graph {
+            ours: folders.map(|(n, f)| (n.to_string(), f.to_string())).into(),
+            needs,
+        }
     }
 
     #[test]
@@ -174,17 +195,29 @@ mod tests {
     #[test]
     fn a_service_that_reaches_the_chip_through_others_is_found() {
         let graph = made_up(&[("tracker", "innocent"), ("innocent", "cortex-m")]);
-        assert_eq!(violations(&graph), ["services/tracker reaches the hardware crate cortex-m"]);
+        assert_eq!(
+            violations(&graph),
+            ["services/tracker reaches the hardware crate cortex-m"]
+        );
     }
 
     #[test]
     fn a_twin_that_uses_the_app_is_found() {
-        assert_eq!(violations(&made_up(&[("twin", "app")])), ["twin depends on app (app)"]);
+        assert_eq!(
+            violations(&made_up(&[("twin", "app")])),
+            ["twin depends on app (app)"]
+        );
     }
 
     #[test]
     fn allowed_edges_are_quiet() {
-        let graph = made_up(&[("tracker", "mode-s"), ("app", "hal"), ("app", "tracker"), ("hal", "cortex-m"), ("twin", "rp2040-emu")]);
+        let graph = made_up(&[
+            ("tracker", "mode-s"),
+            ("app", "hal"),
+            ("app", "tracker"),
+            ("hal", "cortex-m"),
+            ("twin", "rp2040-emu"),
+        ]);
         assert_eq!(violations(&graph), Vec::<String>::new());
     }
 }

@@ -23,6 +23,8 @@ pub struct Section {
 pub struct Symbol {
     pub name: String,
     pub address: u32,
+    /// Bytes; 0 where the symbol only marks a place.
+    pub size: u32,
     pub is_function: bool,
 }
 
@@ -85,6 +87,7 @@ pub fn read(path: &Path) -> Result<Image, String> {
             Some(Symbol {
                 name: symbol.name().ok()?.to_string(),
                 address: symbol.address() as u32,
+                size: symbol.size() as u32,
                 is_function: symbol.kind() == SymbolKind::Text,
             })
         })

@@ -2,28 +2,58 @@
 //!
 //! | command | does |
 //! |---|---|
+//! | `demo` | builds all, boots the image in the twin, plays real traffic, shows the device's console |
 //! | `fw` | builds bootloader and app for the chip, checks their placement, writes target/fw/*.elf and the combined UF2 |
+//! | `test` | everything that CI checks |
+//! | `check` | format, lints, dependency edges |
+//! | `size` | flash and RAM by crate and layer against the committed budget |
+//! | `bench` | a benchmark; its last line is `result: key=value ...` |
 //!
 //! One file a command; what commands share has a file of its own (`thumb`, `elf`, `flash_image`, `uf2`, `hot`, `workspace`).
 
+mod bench;
+mod check;
+mod demo;
+mod edges;
 mod elf;
 mod flash_image;
 mod fw;
 mod hot;
+mod size;
+mod test;
 mod thumb;
 mod uf2;
 mod workspace;
 
 use std::process::ExitCode;
 
-const USAGE: &str = "usage: cargo xtask fw";
+const USAGE: &str = "\
+usage: cargo xtask <command>
+
+  demo [options] [FILE]  build all, boot the image in the twin, play real traffic (--help lists the options)
+  fw                     build the firmware images and the UF2 file, into target/fw
+  test                   everything that CI checks
+  check                  format, lints, dependency edges
+  size                   flash and RAM by crate and layer, against xtask/size-budget.txt
+  bench <name> [--save]  run a benchmark; --save writes its table to docs/bench
+";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let names: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let result = match names.as_slice() {
+        ["demo", rest @ ..] => demo::run(rest),
         ["fw"] => fw::run(),
-        _ => Err(USAGE.to_string()),
+        ["test"] => test::run(),
+        ["check"] => check::run(),
+        ["size"] => fw::run().and_then(|()| size::run()),
+        ["bench", rest @ ..] => bench::run(rest),
+        ["help" | "-h" | "--help"] => {
+            print!("{USAGE}\nbenchmarks:\n{}", bench::list());
+            Ok(())
+        }
+        [] => Err(format!("no command\n{USAGE}")),
+        [unknown, ..] => Err(format!("no command is called {unknown}\n{USAGE}")),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -27,8 +27,13 @@ fn crate_of(symbol: &str) -> Option<&str> {
     let (length, rest) = rest.split_at(digits);
     let name = rest.get(..length.parse().ok()?)?;
     // `_$LT$demod..Demodulator$u20$as$u20$…$GT$`: the type's crate stands before the first "..".
-    let inner = name.trim_start_matches("_$LT$").trim_start_matches("$RF$").trim_start_matches("dyn$u20$");
-    let end = inner.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(inner.len());
+    let inner = name
+        .trim_start_matches("_$LT$")
+        .trim_start_matches("$RF$")
+        .trim_start_matches("dyn$u20$");
+    let end = inner
+        .find(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
+        .unwrap_or(inner.len());
     Some(&inner[..end]).filter(|name| !name.is_empty())
 }
 
@@ -49,10 +54,14 @@ fn by_crate(image: &elf::Image) -> BTreeMap<String, Bytes> {
     let mut crates: BTreeMap<String, Bytes> = BTreeMap::new();
     // Sections that are loaded from flash but run in SRAM take both.
     let loaded = |address: u32| {
-        image.sections.iter().find(|s| (s.address..s.address + s.size).contains(&address)).map(|s| {
-            let in_sram = s.address >= SRAM;
-            (in_sram, !in_sram || !s.bytes.is_empty())
-        })
+        image
+            .sections
+            .iter()
+            .find(|s| (s.address..s.address + s.size).contains(&address))
+            .map(|s| {
+                let in_sram = s.address >= SRAM;
+                (in_sram, !in_sram || !s.bytes.is_empty())
+            })
     };
     let mut symbols: Vec<_> = image.symbols.iter().filter(|s| s.size > 0).collect();
     symbols.sort_by_key(|s| (s.address & !1, std::cmp::Reverse(s.size)));
@@ -64,12 +73,19 @@ fn by_crate(image: &elf::Image) -> BTreeMap<String, Bytes> {
             continue;
         }
         end = address + symbol.size;
-        let Some((ram, flash)) = loaded(address) else { continue };
-        let entry = crates.entry(crate_of(&symbol.name).unwrap_or("(unnamed)").to_string()).or_default();
+        let Some((ram, flash)) = loaded(address) else {
+            continue;
+        };
+        let entry = crates
+            .entry(crate_of(&symbol.name).unwrap_or("(unnamed)").to_string())
+            .or_default();
         entry.flash += if flash { symbol.size } else { 0 };
         entry.ram += if ram { symbol.size } else { 0 };
     }
-    let named = crates.values().fold(Bytes::default(), |t, b| Bytes { flash: t.flash + b.flash, ram: t.ram + b.ram });
+    let named = crates.values().fold(Bytes::default(), |t, b| Bytes {
+        flash: t.flash + b.flash,
+        ram: t.ram + b.ram,
+    });
     let total = total(image);
     let unnamed = crates.entry("(unnamed)".into()).or_default();
     unnamed.flash += total.flash.saturating_sub(named.flash);
@@ -80,7 +96,12 @@ fn by_crate(image: &elf::Image) -> BTreeMap<String, Bytes> {
 fn total(image: &elf::Image) -> Bytes {
     Bytes {
         flash: image.loads.iter().map(|l| l.bytes.len() as u32).sum(),
-        ram: image.sections.iter().filter(|s| s.address >= SRAM).map(|s| s.size).sum(),
+        ram: image
+            .sections
+            .iter()
+            .filter(|s| s.address >= SRAM)
+            .map(|s| s.size)
+            .sum(),
     }
 }
 
@@ -92,7 +113,8 @@ pub fn run() -> Result<(), String> {
     let mut over = Vec::new();
     for name in ["bootloader", "app"] {
         let file = workspace::images()?.join(format!("{name}.elf"));
-        let image = elf::read(&file).map_err(|error| format!("{error}; build it with `cargo xtask fw`"))?;
+        let image =
+            elf::read(&file).map_err(|error| format!("{error}; build it with `cargo xtask fw`"))?;
         let crates = by_crate(&image);
         println!("{name:<24} {:>9} {:>9}", "flash", "RAM");
         let mut layers: BTreeMap<&str, Bytes> = BTreeMap::new();
@@ -107,7 +129,10 @@ pub fn run() -> Result<(), String> {
             match budget.get(&(name.to_string(), layer.to_string())) {
                 None => over.push(format!("{name} {layer}: no line in {BUDGET}")),
                 Some(limit) => {
-                    println!("  = {layer:<20} {:>9} {:>9}   of {} and {}", bytes.flash, bytes.ram, limit.flash, limit.ram);
+                    println!(
+                        "  = {layer:<20} {:>9} {:>9}   of {} and {}",
+                        bytes.flash, bytes.ram, limit.flash, limit.ram
+                    );
                     if bytes.flash > limit.flash || bytes.ram > limit.ram {
                         over.push(format!(
                             "{name} {layer}: {} B flash and {} B RAM, the budget is {} and {}",
@@ -121,7 +146,10 @@ pub fn run() -> Result<(), String> {
     if over.is_empty() {
         return Ok(());
     }
-    Err(format!("over the size budget; make it smaller, or change {BUDGET} and say why:\n  {}", over.join("\n  ")))
+    Err(format!(
+        "over the size budget; make it smaller, or change {BUDGET} and say why:\n  {}",
+        over.join("\n  ")
+    ))
 }
 
 fn parse_budget(text: &str) -> Result<BTreeMap<(String, String), Bytes>, String> {
@@ -133,10 +161,23 @@ fn parse_budget(text: &str) -> Result<BTreeMap<(String, String), Bytes>, String>
         }
         let fields: Vec<&str> = line.split_whitespace().collect();
         let [image, layer, flash, ram] = fields[..] else {
-            return Err(format!("{BUDGET}, line {}: expected `image layer flash ram`", n + 1));
+            return Err(format!(
+                "{BUDGET}, line {}: expected `image layer flash ram`",
+                n + 1
+            ));
         };
-        let bytes = |field: &str| field.parse().map_err(|_| format!("{BUDGET}, line {}: {field} is no number", n + 1));
-        budget.insert((image.to_string(), layer.to_string()), Bytes { flash: bytes(flash)?, ram: bytes(ram)? });
+        let bytes = |field: &str| {
+            field
+                .parse()
+                .map_err(|_| format!("{BUDGET}, line {}: {field} is no number", n + 1))
+        };
+        budget.insert(
+            (image.to_string(), layer.to_string()),
+            Bytes {
+                flash: bytes(flash)?,
+                ram: bytes(ram)?,
+            },
+        );
     }
     Ok(budget)
 }
@@ -147,17 +188,38 @@ mod tests {
 
     #[test]
     fn symbols_name_their_crate() {
-        assert_eq!(crate_of("_ZN5demod11demodulator10demodulate17h378e7bbb84786c9fE"), Some("demod"));
-        assert_eq!(crate_of("_ZN50_$LT$tracker..Tracker$u20$as$u20$core..fmt..Debug$GT$3fmt17h0E"), Some("tracker"));
+        assert_eq!(
+            crate_of("_ZN5demod11demodulator10demodulate17h378e7bbb84786c9fE"),
+            Some("demod")
+        );
+        assert_eq!(
+            crate_of("_ZN50_$LT$tracker..Tracker$u20$as$u20$core..fmt..Debug$GT$3fmt17h0E"),
+            Some("tracker")
+        );
         assert_eq!(crate_of("__aeabi_memcpy"), None);
         assert_eq!(crate_of("_ZN999short"), None);
     }
 
     #[test]
     fn the_budget_reads_back_and_bad_lines_are_named() {
-        let budget = parse_budget("# image layer flash ram\napp services 100 20 # why\n\n").unwrap();
-        assert_eq!(budget[&("app".to_string(), "services".to_string())], Bytes { flash: 100, ram: 20 });
-        assert!(parse_budget("app services 100\n").unwrap_err().contains("line 1"));
-        assert!(parse_budget("app services x 1\n").unwrap_err().contains("x is no number"));
+        let budget =
+            parse_budget("# image layer flash ram\napp services 100 20 # why\n\n").unwrap();
+        assert_eq!(
+            budget[&("app".to_string(), "services".to_string())],
+            Bytes {
+                flash: 100,
+                ram: 20
+            }
+        );
+        assert!(
+            parse_budget("app services 100\n")
+                .unwrap_err()
+                .contains("line 1")
+        );
+        assert!(
+            parse_budget("app services x 1\n")
+                .unwrap_err()
+                .contains("x is no number")
+        );
     }
 }

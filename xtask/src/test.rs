@@ -19,7 +19,9 @@ pub fn run() -> Result<(), String> {
     size::run()?;
     println!("test: all host crates, and the images in the twin");
     let mut tests = Command::new(env!("CARGO"));
-    tests.current_dir(workspace::root()?).args(["test", "--no-fail-fast"]);
+    tests
+        .current_dir(workspace::root()?)
+        .args(["test", "--no-fail-fast"]);
     workspace::run(&mut tests)?;
     println!("test: all good");
     Ok(())

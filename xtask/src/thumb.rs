@@ -47,6 +47,11 @@ pub fn build(packages: &[&str]) -> Result<PathBuf, String> {
     Ok(target.join(TARGET).join(PROFILE))
 }
 
+/// Installs the target if it is missing.
+pub fn ensure_target() -> Result<(), String> {
+    toolchain().map(|_| ())
+}
+
 /// Finds a toolchain, installing the target if rustup can.
 fn toolchain() -> Result<Toolchain, String> {
     if target_installed() {
