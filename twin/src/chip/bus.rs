@@ -138,6 +138,10 @@ pub struct Bus {
     pub stale_code: Vec<u32>,
     code: Vec<bool>,
     lines: [u32; 2],
+    /// Interrupt lines may have changed since they were computed.
+    lines_dirty: bool,
+    /// No peripheral has anything to do before this cycle; zero while that is not known.
+    quiet_until: u64,
     /// Cycle at which a sleeping core's wake-up became pending.
     pub wake_at: [Option<u64>; 2],
     /// Set for cores that sleep; the bus then watches their lines.
@@ -198,6 +202,8 @@ impl Bus {
             stale_code: Vec::new(),
             code: vec![false; SRAM / CODE_GRANULE],
             lines: [0; 2],
+            lines_dirty: true,
+            quiet_until: 0,
             wake_at: [None; 2],
             asleep: [false; 2],
             dma_at: u64::MAX,
@@ -253,6 +259,8 @@ impl Bus {
         self.wake_at = [None; 2];
         self.asleep = [false; 2];
         self.lines = [0; 2];
+        self.lines_dirty = true;
+        self.quiet_until = 0;
         self.storage = [0; 8];
         self.core1_forced_off = false;
         self.core1_launching = false;
@@ -327,29 +335,44 @@ impl Bus {
         if to <= self.now {
             return;
         }
+        if to < self.quiet_until {
+            self.now = to;
+            return;
+        }
         if self.next_pio() <= to {
             self.pins.look_ahead(to);
         }
         loop {
-            let mut limit = self.next_event().min(to);
+            let event = self.next_event();
+            let mut limit = event.min(to);
             // PIO runs to its first visible effect before the next event of anything else.
             let (a, b) = (self.pio[0].next_tick(), self.pio[1].next_tick());
+            let mut visible = false;
             if a.min(b) <= limit {
                 let (first, other) = if b < a { (1, a) } else { (0, b) };
-                limit = self.pio[first].run(limit.min(other), &mut self.pins);
-                if self.pio[first].pad_oe != 0 {
+                let bound = limit.min(other);
+                limit = self.pio[first].run(bound, &mut self.pins);
+                visible = self.pio[first].take_visible();
+                if visible && self.pio[first].pad_oe != 0 {
                     self.resolve_pins();
                 }
             }
             self.now = self.now.max(limit);
-            self.fire();
-            if stop_on_wake && self.wake_at != [None; 2] {
-                return;
+            if visible || event <= self.now {
+                self.fire();
+                if stop_on_wake && self.wake_at != [None; 2] {
+                    break;
+                }
             }
-            if self.now >= to && self.next_event() > to && self.next_pio() > to {
-                break;
+            if self.now >= to {
+                let next = self.next_event().min(self.next_pio());
+                if next > to {
+                    self.quiet_until = next;
+                    return;
+                }
             }
         }
+        self.quiet_until = 0;
     }
 
     fn next_pio(&self) -> u64 {
@@ -384,6 +407,7 @@ impl Bus {
         } else {
             self.dma_at = u64::MAX;
         }
+        self.lines_dirty = true;
         self.update_lines();
     }
 
@@ -541,7 +565,12 @@ impl Bus {
 
     /// Level interrupts become pending unless their handler runs already; sleeping cores note when they were woken.
     pub fn update_lines(&mut self) {
-        self.lines = self.compute_lines();
+        if std::mem::take(&mut self.lines_dirty) {
+            self.lines = self.compute_lines();
+        }
+        if self.lines == [0; 2] && self.asleep == [false; 2] {
+            return;
+        }
         for core in 0..2 {
             let active = (self.ppb[core].active >> 16) as u32;
             self.nvic[core].pending |= self.lines[core] & !active;
@@ -764,6 +793,8 @@ impl Bus {
         if self.dma.busy != 0 {
             self.dma_at = self.dma_at.min(now + 1);
         }
+        self.quiet_until = 0;
+        self.lines_dirty = true;
         match value {
             Some(v) => v,
             None => {
@@ -809,6 +840,8 @@ impl Bus {
         if self.dma.busy != 0 {
             self.dma_at = self.dma_at.min(self.now + 1);
         }
+        self.quiet_until = 0;
+        self.lines_dirty = true;
         self.update_lines();
     }
 
@@ -1066,11 +1099,7 @@ impl Bus {
         self.attention = true;
         self.advance(self.core_time);
         let value = self.peripheral_read(address);
-        if matches!(address & 0xffff_f000, 0x4003_4000 | 0x4003_8000)
-            || address & 0xfff0_0000 == 0x5020_0000
-        {
-            self.update_lines();
-        }
+        self.update_lines();
         value
     }
 

@@ -14,8 +14,6 @@
 //! [`edge_tick`]; a reader at cycle `c` sees the level two cycles earlier, behind the input synchroniser (datasheet 3.5.6.3). Every other
 //! pin changes only between the slices in which the chip runs. A pin that drives itself is read back without the synchroniser's delay.
 
-use std::collections::VecDeque;
-
 use crate::front_end::{Edge, PulseSource, edge_tick};
 
 /// Number of pads in bank 0.
@@ -33,8 +31,19 @@ struct Playback {
     start: u64,
     /// Playback time up to which edges were asked for.
     asked_ps: u64,
-    edges: VecDeque<(u64, bool)>,
+    /// Edges in cycles, and how many of them were played.
+    edges: Vec<(u64, bool)>,
+    played: usize,
     scratch: Vec<Edge>,
+}
+
+impl Playback {
+    /// Cycle from which the next edge is seen behind the synchroniser.
+    fn next_visible(&self) -> u64 {
+        self.edges
+            .get(self.played)
+            .map_or(u64::MAX, |e| e.0 + SYNC_CYCLES)
+    }
 }
 
 /// Pads, function multiplexers and their interrupts.
@@ -110,7 +119,8 @@ impl Pins {
             pin,
             start,
             asked_ps: 0,
-            edges: VecDeque::new(),
+            edges: Vec::new(),
+            played: 0,
             scratch: Vec::new(),
         });
         self.next_visible = u64::MAX;
@@ -121,7 +131,7 @@ impl Pins {
     pub fn playback_finished(&self) -> bool {
         self.playback
             .as_ref()
-            .is_none_or(|p| p.source.finished() && p.edges.is_empty())
+            .is_none_or(|p| p.source.finished() && p.played == p.edges.len())
     }
 
     /// Hands the trigger level to the front end, millivolts.
@@ -135,14 +145,16 @@ impl Pins {
     pub fn look_ahead(&mut self, until: u64) {
         let Some(p) = &mut self.playback else { return };
         while p.start + edge_tick(p.asked_ps) <= until && !p.source.finished() {
+            p.edges.drain(..p.played);
+            p.played = 0;
             p.asked_ps += LOOKAHEAD_PS;
             p.scratch.clear();
             p.source.next_edges(p.asked_ps, &mut p.scratch);
-            for e in &p.scratch {
-                p.edges.push_back((p.start + edge_tick(e.at_ps), e.level));
-            }
+            let start = p.start;
+            let cycles = |e: &Edge| (start + edge_tick(e.at_ps), e.level);
+            p.edges.extend(p.scratch.iter().map(cycles));
         }
-        self.next_visible = p.edges.front().map_or(u64::MAX, |e| e.0 + SYNC_CYCLES);
+        self.next_visible = p.next_visible();
     }
 
     /// Input levels as a reader at cycle `now` sees them. Pins in `bypass` skip the synchroniser; for the playback pin that is exact only
@@ -165,18 +177,18 @@ impl Pins {
             SYNC_CYCLES
         };
         let mut changed = 0;
-        while let Some(&(at, level)) = p.edges.front() {
+        for &(at, level) in &p.edges[p.played..] {
             if at + delay > now {
                 break;
             }
-            p.edges.pop_front();
+            p.played += 1;
             if level != (self.external & (1 << pin) != 0) {
                 self.external ^= 1 << pin;
                 changed = 1 << pin;
                 self.intr[pin as usize / 8] |= if level { 8 } else { 4 } << (4 * (pin % 8));
             }
         }
-        self.next_visible = p.edges.front().map_or(u64::MAX, |e| e.0 + SYNC_CYCLES);
+        self.next_visible = p.next_visible();
         if changed != 0 {
             self.level = (self.external & changed & !self.oe) | (self.level & (!changed | self.oe));
         }

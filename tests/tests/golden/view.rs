@@ -1,0 +1,248 @@
+//! What a decoder reads in one frame, in one form for all decoders.
+
+use mode_s::{
+    AltitudeSource, Body, Cpr, CprFormat, Frame, HorizontalVelocity, Me, Message, Parity,
+};
+use std::collections::BTreeMap;
+
+/// A field of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Field {
+    Df,
+    /// CRC-24 residual of the whole frame.
+    Residual,
+    /// 24 bits.
+    Address,
+    /// VS: 1 on the ground.
+    VerticalStatus,
+    FlightStatus,
+    /// CA of DF11 and DF17; codes 1-3 are one reserved class to the peers, so they are 1 here.
+    Capability,
+    /// Feet, of any source.
+    Altitude,
+    /// 0 barometric, 1 GNSS.
+    AltitudeSource,
+    /// Four octal digits.
+    Squawk,
+    /// TC, 0-31.
+    TypeCode,
+    /// Characters, without spaces.
+    Callsign,
+    /// CA of TC 1-4.
+    Category,
+    /// Knots.
+    GroundSpeed,
+    /// Degrees.
+    Track,
+    /// Degrees.
+    Heading,
+    /// Knots.
+    Airspeed,
+    /// 1 true, 0 indicated.
+    AirspeedIsTrue,
+    /// Feet a minute.
+    VerticalRate,
+    /// 1 barometric, 0 GNSS.
+    VerticalRateIsBarometric,
+    /// Feet.
+    GnssMinusBaro,
+    Nacv,
+    /// SS.
+    SurveillanceStatus,
+    /// T.
+    UtcSynchronised,
+    /// 1 odd.
+    CprIsOdd,
+    /// YZ.
+    CprLatitude,
+    /// XZ.
+    CprLongitude,
+}
+
+/// What a decoder says of a field.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Said {
+    /// The frame has the field, but it holds no value.
+    Nothing,
+    Whole(i64),
+    Real(f64),
+    Text(String),
+}
+
+impl Said {
+    pub fn whole(value: Option<impl Into<i64>>) -> Said {
+        value.map_or(Said::Nothing, |value| Said::Whole(value.into()))
+    }
+
+    pub fn real(value: Option<f64>) -> Said {
+        value.map_or(Said::Nothing, Said::Real)
+    }
+
+    /// As a number, where it is one.
+    pub fn number(&self) -> Option<f64> {
+        match *self {
+            Said::Whole(value) => Some(value as f64),
+            Said::Real(value) => Some(value),
+            Said::Nothing | Said::Text(_) => None,
+        }
+    }
+}
+
+/// The fields a decoder reads in a frame. A field that the decoder does not know of is absent.
+pub type View = BTreeMap<Field, Said>;
+
+/// What this project reads.
+pub fn ours(frame: &Frame) -> View {
+    let message = Message::decode(frame);
+    let mut view = View::new();
+    let mut say = |field, said| {
+        view.insert(field, said);
+    };
+    say(Field::Df, Said::Whole(message.df.number().into()));
+    say(Field::Residual, Said::Whole(frame.residual().into()));
+    if message.parity != Parity::Unjudged {
+        let address = message.address().map(|address| address.bits());
+        say(Field::Address, Said::whole(address));
+    }
+    let feet = |altitude: Option<mode_s::AltitudeFt>| Said::whole(altitude.map(|feet| feet.0));
+    match message.body {
+        Body::AirAir {
+            on_ground,
+            altitude,
+        } => {
+            say(Field::VerticalStatus, Said::Whole(on_ground.into()));
+            say(Field::Altitude, feet(altitude));
+        }
+        Body::AltitudeReply {
+            flight_status,
+            altitude,
+        } => {
+            say(Field::FlightStatus, Said::Whole(flight_status.0.into()));
+            say(Field::Altitude, feet(altitude));
+        }
+        Body::IdentityReply {
+            flight_status,
+            squawk,
+        } => {
+            say(Field::FlightStatus, Said::Whole(flight_status.0.into()));
+            say(Field::Squawk, Said::Text(format!("{:04o}", squawk.0)));
+        }
+        Body::AllCallReply { capability } => {
+            say(Field::Capability, capability_class(capability.0));
+        }
+        Body::ExtendedSquitter { capability, me } => {
+            if let Some(capability) = capability {
+                say(Field::Capability, capability_class(capability.0));
+            }
+            view.append(&mut ours_me(&me));
+        }
+        Body::NotDecoded => {}
+    }
+    view
+}
+
+/// CA with the reserved codes 1-3 as one.
+fn capability_class(ca: u8) -> Said {
+    Said::Whole(match ca {
+        1..=3 => 1,
+        other => other.into(),
+    })
+}
+
+fn ours_me(me: &Me) -> View {
+    let mut view = View::new();
+    let mut say = |field, said| {
+        view.insert(field, said);
+    };
+    match me {
+        Me::Identification(id) => {
+            say(Field::TypeCode, Said::Whole(id.category.type_code.into()));
+            say(Field::Category, Said::Whole(id.category.ca.into()));
+            let callsign = id.callsign.map(|callsign| {
+                let text = String::from_utf8_lossy(callsign.as_bytes());
+                Said::Text(text.replace(' ', ""))
+            });
+            say(Field::Callsign, callsign.unwrap_or(Said::Nothing));
+        }
+        Me::SurfacePosition(position) => {
+            say(Field::TypeCode, Said::Whole(position.type_code.into()));
+            let knots = position.ground_speed_eighths;
+            say(
+                Field::GroundSpeed,
+                Said::real(knots.map(|eighths| f64::from(eighths) / 8.0)),
+            );
+            say(Field::Track, degrees(position.track));
+            say(
+                Field::UtcSynchronised,
+                Said::Whole(position.utc_synchronised.into()),
+            );
+            view.append(&mut ours_cpr(position.cpr));
+        }
+        Me::AirbornePosition(position) => {
+            say(Field::TypeCode, Said::Whole(position.type_code.into()));
+            say(
+                Field::SurveillanceStatus,
+                Said::Whole(position.surveillance_status.into()),
+            );
+            let altitude = position.altitude;
+            say(Field::Altitude, Said::whole(altitude.map(|a| a.altitude.0)));
+            let is_gnss = altitude.map(|a| a.source == AltitudeSource::Gnss);
+            say(Field::AltitudeSource, Said::whole(is_gnss));
+            say(
+                Field::UtcSynchronised,
+                Said::Whole(position.utc_synchronised.into()),
+            );
+            view.append(&mut ours_cpr(position.cpr));
+        }
+        Me::Velocity(velocity) => {
+            say(Field::TypeCode, Said::Whole(19));
+            say(Field::Nacv, Said::Whole(velocity.nacv.into()));
+            match velocity.horizontal {
+                Some(HorizontalVelocity::Ground { speed_kt, track }) => {
+                    say(Field::GroundSpeed, Said::Whole(speed_kt.into()));
+                    say(Field::Track, degrees(track));
+                }
+                Some(HorizontalVelocity::Air { heading, airspeed }) => {
+                    say(Field::Heading, degrees(heading));
+                    say(Field::Airspeed, Said::whole(airspeed.map(|a| a.knots)));
+                    let is_true = airspeed.map(|a| a.is_true);
+                    say(Field::AirspeedIsTrue, Said::whole(is_true));
+                }
+                None => {}
+            }
+            let rate = velocity.vertical_rate;
+            say(
+                Field::VerticalRate,
+                Said::whole(rate.map(|rate| rate.feet_per_minute)),
+            );
+            let is_barometric = rate.map(|rate| rate.is_barometric);
+            say(Field::VerticalRateIsBarometric, Said::whole(is_barometric));
+            say(
+                Field::GnssMinusBaro,
+                Said::whole(velocity.gnss_minus_baro_ft),
+            );
+        }
+        Me::NotDecoded { type_code, .. } => {
+            say(Field::TypeCode, Said::Whole((*type_code).into()));
+        }
+    }
+    view
+}
+
+fn degrees(angle: Option<mode_s::CentiDegrees>) -> Said {
+    Said::real(angle.map(|angle| f64::from(angle.0) / 100.0))
+}
+
+fn ours_cpr(cpr: Option<Cpr>) -> View {
+    View::from([
+        (
+            Field::CprIsOdd,
+            Said::whole(cpr.map(|cpr| cpr.format == CprFormat::Odd)),
+        ),
+        (Field::CprLatitude, Said::whole(cpr.map(|cpr| cpr.latitude))),
+        (
+            Field::CprLongitude,
+            Said::whole(cpr.map(|cpr| cpr.longitude)),
+        ),
+    ])
+}
