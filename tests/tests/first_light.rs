@@ -1,7 +1,6 @@
 //! The shipped image in the twin: it boots, hears, reports, answers, and survives what it is given.
 
 use std::path::Path;
-use std::process::{Command, Output};
 
 use twin::board::Board;
 use twin::chip::flash::Flash;
@@ -189,8 +188,11 @@ fn a_console_that_nobody_reads_costs_counted_messages_and_nothing_else() {
     let mut board = booted();
     board.chip.bus.usb_host.reading = false;
     ask(&mut board, "AT+PROTOCOL=CONSOLE,RAW");
-    board.play(modes1()).expect("playback starts");
-    board.run_ms(1_000).expect("the chip runs");
+    // Twice the recording is more than the port's buffer holds.
+    for _ in 0..2 {
+        board.play(modes1()).expect("playback starts");
+        board.run_ms(500).expect("the chip runs");
+    }
     board.chip.bus.usb_host.reading = true;
     board.run_ms(100).expect("the chip runs");
     board.console_read();
@@ -290,104 +292,6 @@ fn a_board_without_an_app_says_so() {
     flash.bytes[0x1_4000..].fill(0xff);
     let said = refusal(flash);
     assert!(said.contains("AT+ERROR (no image)"), "{said:?}");
-}
-
-fn squitter(arguments: &[&str]) -> Output {
-    // The binary of this workspace; cargo builds it once for all tests.
-    let mut command = Command::new(env!("CARGO"));
-    command
-        .current_dir(tests::root())
-        .args(["run", "--quiet", "--release", "-p", "cli", "--"])
-        .args(arguments);
-    command.output().expect("cargo runs")
-}
-
-fn replayed(engine: &str) -> String {
-    let recording = tests::recording("modes1.bin");
-    let output = squitter(&[
-        "replay",
-        recording.to_str().expect("a path in UTF-8"),
-        "--format",
-        "cu8",
-        "--rate",
-        "2000000",
-        "--engine",
-        engine,
-        "--out",
-        "hex",
-    ]);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    String::from_utf8(output.stdout).expect("text")
-}
-
-#[test]
-fn both_engines_print_the_same_frames_and_at_least_what_dump1090_finds() {
-    let (twin, native) = (replayed("twin"), replayed("native"));
-    assert_eq!(twin, native);
-    let frames: Vec<&str> = twin
-        .lines()
-        .map(|l| l.split(',').nth(1).expect("a hex column"))
-        .collect();
-    assert!(frames.len() >= 284, "{} frames", frames.len());
-    for hex in frames {
-        let bits = u8::from_str_radix(&hex[..2], 16).expect("hexadecimal");
-        if matches!(bits >> 3, 11 | 17) {
-            assert_eq!(&hex[2..8], "4d2023", "{hex}");
-        }
-    }
-}
-
-#[test]
-fn bad_recordings_are_refused_with_the_cause() {
-    let folder = std::env::temp_dir().join(format!("squitter-bad-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a folder for test files");
-    let file = |name: &str, bytes: &[u8]| {
-        let path = folder.join(name);
-        std::fs::write(&path, bytes).expect("a test file");
-        path.to_str().expect("a path in UTF-8").to_string()
-    };
-    let (empty, odd, good) = (
-        file("empty", b""),
-        file("odd", &[127; 1001]),
-        file("good", &[127; 1000]),
-    );
-    let missing = folder
-        .join("missing")
-        .to_str()
-        .expect("a path in UTF-8")
-        .to_string();
-    let native = ["--engine", "native"];
-    for (arguments, cause) in [
-        (
-            vec![missing.as_str(), "--format", "cu8", "--rate", "2000000"],
-            "cannot read",
-        ),
-        (
-            vec![&empty, "--format", "cu8", "--rate", "2000000"],
-            "empty",
-        ),
-        (
-            vec![&odd, "--format", "cu8", "--rate", "2000000"],
-            "whole number",
-        ),
-        (vec![&good, "--format", "wav", "--rate", "2000000"], "wav"),
-        (vec![&good, "--format", "cu8", "--rate", "0"], "rate"),
-        (
-            vec![&good, "--format", "cu8", "--rate", "99999999999"],
-            "rate",
-        ),
-        (vec![&good, "--rate", "2000000"], "--format"),
-    ] {
-        let output = squitter(&[&["replay"], arguments.as_slice(), &native].concat());
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
-        assert!(said.contains(cause), "{arguments:?}: {said}");
-    }
-    std::fs::remove_dir_all(&folder).expect("the folder goes");
 }
 
 #[test]

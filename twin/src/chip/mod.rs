@@ -448,3 +448,7 @@ fn boot2_crc(bytes: &[u8]) -> u32 {
         })
     })
 }
+
+#[cfg(test)]
+#[path = "chip_tests.rs"]
+mod tests;

@@ -899,6 +899,8 @@ mod tests {
     use crate::front_end::{Edge, PulseSource};
 
     const PIN: u32 = 19;
+    /// Autopush at 32 bits, RX FIFO joined, shifting left: what the firmware sets.
+    const LEFT_32: u32 = 1 << 16 | 2 << 30;
 
     /// Edges at irregular times, for ever.
     struct Comb(u64);
@@ -922,14 +924,14 @@ mod tests {
     }
 
     /// A sampler like the firmware's; `spoiled` has a second instruction in its loop's place, so that the shortcut does not apply.
-    fn sampler(shortcut: bool) -> (Pio, Pins) {
+    fn sampler(shortcut: bool, shiftctrl: u32) -> (Pio, Pins) {
         let (mut pio, mut pins) = (Pio::new(), Pins::new());
         pins.play(Box::new(Comb(0)), PIN, 0);
         pins.look_ahead(2_000_000);
         pio.write(0x048, 0x4001, 0, &mut pins);
         pio.write(0x0c8, 15 << 16, 0, &mut pins);
         pio.write(0x0cc, 0, 0, &mut pins);
-        pio.write(0x0d0, 1 << 16 | 2 << 30, 0, &mut pins);
+        pio.write(0x0d0, shiftctrl, 0, &mut pins);
         pio.write(0x0dc, PIN << 15, 0, &mut pins);
         // A second state machine that only waits keeps the shortcut away.
         if !shortcut {
@@ -941,8 +943,8 @@ mod tests {
         (pio, pins)
     }
 
-    fn words(shortcut: bool) -> Vec<(u64, u32)> {
-        let (mut pio, mut pins) = sampler(shortcut);
+    fn words(shortcut: bool, shiftctrl: u32) -> Vec<(u64, u32)> {
+        let (mut pio, mut pins) = sampler(shortcut, shiftctrl);
         let mut words = Vec::new();
         let mut now = 0;
         while now < 1_000_000 {
@@ -956,15 +958,23 @@ mod tests {
 
     #[test]
     fn the_sampling_shortcut_gives_the_words_of_the_full_model_at_the_same_cycles() {
-        let (fast, full) = (words(true), words(false));
-        assert!(fast.len() > 2_000, "{}", fast.len());
-        assert!(fast.iter().any(|w| w.1 != 0 && w.1 != u32::MAX));
-        assert_eq!(fast, full);
+        const RIGHT: u32 = 1 << 18;
+        for shiftctrl in [
+            LEFT_32,
+            LEFT_32 | RIGHT,
+            LEFT_32 | 7 << 20,
+            LEFT_32 | RIGHT | 12 << 20,
+        ] {
+            let (fast, full) = (words(true, shiftctrl), words(false, shiftctrl));
+            assert!(fast.len() > 2_000, "{}", fast.len());
+            assert!(fast.iter().any(|w| w.1 != 0 && w.1 != u32::MAX));
+            assert_eq!(fast, full, "SHIFTCTRL {shiftctrl:#x}");
+        }
     }
 
     #[test]
     fn a_full_receive_fifo_stalls_the_sampler_and_shows_in_fdebug() {
-        let (mut pio, mut pins) = sampler(true);
+        let (mut pio, mut pins) = sampler(true, LEFT_32);
         let mut now = 0;
         while now < 480 * 8 {
             now = pio.run(480 * 8, &mut pins);
@@ -983,7 +993,7 @@ mod tests {
 
     #[test]
     fn a_fractional_divider_ticks_on_average_at_its_rate() {
-        let (mut pio, mut pins) = sampler(true);
+        let (mut pio, mut pins) = sampler(true, LEFT_32);
         // 7 + 208/256 cycles: 125 MHz / 16 MHz of the datasheet's examples.
         pio.write(0x0c8, 7 << 16 | 208 << 8, 0, &mut pins);
         pio.write(0x0d0, 1 << 16 | 8 << 20 | 2 << 30, 0, &mut pins);
