@@ -322,6 +322,7 @@ impl Pio {
             || sm.clkdiv & 0xff00 != 0
             || sm.clkdiv >> 16 == 0
             || sm.shiftctrl & (1 << 18) != 0
+            || sm.shiftctrl & (1 << 18) != 0
             || sm.autopull()
         {
             return;

@@ -1,0 +1,195 @@
+//! The command line as scripts use it: exit codes, output, causes on standard error.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+/// The checkout's root.
+fn root() -> PathBuf {
+    let manifest = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    manifest.parent().map(PathBuf::from).unwrap_or(manifest)
+}
+
+fn modes1() -> String {
+    let path = root().join("../shared/data/modes1.bin");
+    assert!(
+        path.exists(),
+        "the recording {} is missing; it lies in ../shared/data beside the project",
+        path.display()
+    );
+    path.to_str().expect("a path in UTF-8").to_string()
+}
+
+fn squitter(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_squitter"));
+    command
+        .current_dir(root())
+        .args(arguments)
+        .output()
+        .expect("squitter runs")
+}
+
+fn replayed(engine: &str) -> String {
+    let output = squitter(&[
+        "replay",
+        &modes1(),
+        "--format",
+        "cu8",
+        "--rate",
+        "2000000",
+        "--engine",
+        engine,
+        "--out",
+        "hex",
+    ]);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout).expect("text")
+}
+
+#[test]
+fn both_engines_print_the_same_frames_and_at_least_what_dump1090_finds() {
+    let (twin, native) = (replayed("twin"), replayed("native"));
+    let differs = twin.lines().zip(native.lines()).position(|(t, n)| t != n);
+    assert_eq!(
+        differs,
+        None,
+        "first at line {differs:?} of {} and {}",
+        twin.lines().count(),
+        native.lines().count()
+    );
+    assert_eq!(twin.lines().count(), native.lines().count());
+    let frames: Vec<&str> = twin
+        .lines()
+        .map(|l| l.split(',').nth(1).expect("a hex column"))
+        .collect();
+    assert!(frames.len() >= 284, "{} frames", frames.len());
+    for hex in frames {
+        let bits = u8::from_str_radix(&hex[..2], 16).expect("hexadecimal");
+        if matches!(bits >> 3, 11 | 17) {
+            assert_eq!(&hex[2..8], "4d2023", "{hex}");
+        }
+    }
+}
+
+#[test]
+fn bad_recordings_are_refused_with_the_cause() {
+    let folder = std::env::temp_dir().join(format!("squitter-bad-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder for test files");
+    let file = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).expect("a test file");
+        path.to_str().expect("a path in UTF-8").to_string()
+    };
+    let (empty, odd, good) = (
+        file("empty", b""),
+        file("odd", &[127; 1001]),
+        file("good", &[127; 1000]),
+    );
+    let missing = folder
+        .join("missing")
+        .to_str()
+        .expect("a path in UTF-8")
+        .to_string();
+    let native = ["--engine", "native"];
+    for (arguments, cause) in [
+        (
+            vec![missing.as_str(), "--format", "cu8", "--rate", "2000000"],
+            "cannot read",
+        ),
+        (
+            vec![&empty, "--format", "cu8", "--rate", "2000000"],
+            "empty",
+        ),
+        (
+            vec![&odd, "--format", "cu8", "--rate", "2000000"],
+            "whole number",
+        ),
+        (vec![&good, "--format", "wav", "--rate", "2000000"], "wav"),
+        (vec![&good, "--format", "cu8", "--rate", "0"], "rate"),
+        (
+            vec![&good, "--format", "cu8", "--rate", "99999999999"],
+            "rate",
+        ),
+        (vec![&good, "--rate", "2000000"], "--format"),
+    ] {
+        let output = squitter(&[&["replay"], arguments.as_slice(), &native].concat());
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
+        assert!(said.contains(cause), "{arguments:?}: {said}");
+    }
+    std::fs::remove_dir_all(&folder).expect("the folder goes");
+}
+
+fn decode(input: &str) -> (Option<i32>, String, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_squitter"))
+        .args(["decode", "--json"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("squitter runs");
+    child
+        .stdin
+        .take()
+        .expect("a pipe")
+        .write_all(input.as_bytes())
+        .expect("it reads");
+    let output = child.wait_with_output().expect("it ends");
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    (
+        output.status.code(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+#[test]
+fn decode_prints_an_object_a_frame_with_the_field_s_names() {
+    let (code, out, err) = decode("*8D485020994409940838175B284F;\n28001B2B0B4A1A\n# remark\n\n");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let objects: Vec<serde_json::Value> = out
+        .lines()
+        .map(|l| serde_json::from_str(l).expect("JSON"))
+        .collect();
+    assert_eq!(objects.len(), 2);
+    assert_eq!(objects[0]["df"], 17);
+    assert_eq!(objects[0]["icao"], "485020");
+    assert_eq!(objects[0]["groundspeed"], 159);
+    assert_eq!(objects[0]["track"], 182.88);
+    assert_eq!(objects[0]["vertical_rate"], -832);
+    assert_eq!(objects[1]["df"], 5);
+}
+
+#[test]
+fn a_line_that_is_no_frame_is_told_and_the_others_are_decoded() {
+    let (code, out, err) = decode("*8D485020994409940838175B284F;\nnonsense\n5D4B18FFFC710B\n");
+    assert_eq!(code, Some(1));
+    assert_eq!(out.lines().count(), 2);
+    assert!(err.contains("line 2"), "{err}");
+}
+
+#[test]
+fn a_wrong_command_line_ends_with_2_and_help_with_0() {
+    assert_eq!(squitter(&["replay"]).status.code(), Some(2));
+    assert_eq!(squitter(&["nonsense"]).status.code(), Some(2));
+    for command in ["replay", "twin", "decode"] {
+        let output = squitter(&[command, "--help"]);
+        assert_eq!(output.status.code(), Some(0));
+        assert!(!output.stdout.is_empty());
+    }
+}
+
+#[test]
+fn a_missing_image_is_told_with_what_to_do() {
+    let output = squitter(&["twin", "--seconds", "1", "--image", "no-such-file.uf2"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        said.contains("no-such-file.uf2") && said.contains("cargo xtask fw"),
+        "{said}"
+    );
+}

@@ -1,0 +1,198 @@
+//! What rs1090 0.7 reads in a frame. It grew out of adsb_deku; its altitude, velocity, CPR and parity code is its own by now.
+
+use crate::view::{Field, Said, View};
+use mode_s::Frame;
+use rs1090::decode::adsb::{ADSB, ME};
+use rs1090::decode::bds::bds05::{AirbornePosition, Source};
+use rs1090::decode::bds::bds06::SurfacePosition;
+use rs1090::decode::bds::bds09::{
+    AirborneVelocity, AirborneVelocitySubType, AirspeedType, VerticalRateSource,
+};
+use rs1090::decode::cpr::CPRFormat;
+use rs1090::decode::{DF, Message};
+
+/// The message, where rs1090 takes the frame.
+pub fn message(frame: &Frame) -> Option<Message> {
+    Message::try_from(frame.bytes()).ok()
+}
+
+/// The fields; `None` where rs1090 refuses the frame.
+pub fn view(frame: &Frame) -> Option<View> {
+    let message = message(frame)?;
+    let mut view = View::from([(Field::Residual, Said::Whole(message.crc.into()))]);
+    let mut say = |field, said| {
+        view.insert(field, said);
+    };
+    let df = match &message.df {
+        DF::ShortAirAirSurveillance { vs, ac, ap, .. } => {
+            say(Field::VerticalStatus, Said::Whole((*vs).into()));
+            say(Field::Altitude, Said::whole(ac.0));
+            say(Field::Address, Said::Whole(ap.0.into()));
+            0
+        }
+        DF::SurveillanceAltitudeReply { fs, ac, ap, .. } => {
+            say(Field::FlightStatus, Said::Whole(*fs as i64));
+            say(Field::Altitude, Said::whole(ac.0));
+            say(Field::Address, Said::Whole(ap.0.into()));
+            4
+        }
+        DF::SurveillanceIdentityReply { fs, id, ap, .. } => {
+            say(Field::FlightStatus, Said::Whole(*fs as i64));
+            say(Field::Squawk, Said::Text(id.to_string()));
+            say(Field::Address, Said::Whole(ap.0.into()));
+            5
+        }
+        DF::AllCallReply {
+            capability, icao, ..
+        } => {
+            say(Field::Capability, Said::Whole(*capability as i64));
+            say(Field::Address, Said::Whole(icao.0.into()));
+            11
+        }
+        DF::LongAirAirSurveillance { vs, ac, ap, .. } => {
+            say(Field::VerticalStatus, Said::Whole((*vs).into()));
+            say(Field::Altitude, Said::whole(ac.0));
+            say(Field::Address, Said::Whole(ap.0.into()));
+            16
+        }
+        DF::ExtendedSquitterADSB(ADSB {
+            capability,
+            icao24,
+            message,
+            ..
+        }) => {
+            say(Field::Capability, Said::Whole(*capability as i64));
+            say(Field::Address, Said::Whole(icao24.0.into()));
+            view.append(&mut me(message));
+            17
+        }
+        DF::ExtendedSquitterTisB { cf, .. } => {
+            say(Field::Address, Said::Whole(cf.aa.0.into()));
+            view.append(&mut me(&cf.me));
+            18
+        }
+        DF::ExtendedSquitterMilitary { .. } => 19,
+        DF::CommBAltitudeReply { fs, ac, ap, .. } => {
+            say(Field::FlightStatus, Said::Whole(*fs as i64));
+            say(Field::Altitude, Said::whole(ac.0));
+            say(Field::Address, Said::Whole(ap.0.into()));
+            20
+        }
+        DF::CommBIdentityReply { fs, id, ap, .. } => {
+            say(Field::FlightStatus, Said::Whole(*fs as i64));
+            say(Field::Squawk, Said::Text(id.to_string()));
+            say(Field::Address, Said::Whole(ap.0.into()));
+            21
+        }
+        DF::CommDExtended { .. } => 24,
+    };
+    view.insert(Field::Df, Said::Whole(df));
+    Some(view)
+}
+
+fn me(me: &ME) -> View {
+    let mut view = View::new();
+    let type_code = match me {
+        ME::NoPosition(_) => 0,
+        ME::BDS08 { id, inner } => {
+            view.insert(Field::Category, Said::Whole(inner.ca.into()));
+            view.insert(Field::Callsign, callsign(&inner.callsign));
+            *id
+        }
+        ME::BDS06 { tc, inner } => {
+            view.append(&mut surface(inner));
+            *tc
+        }
+        ME::BDS05 { tc, inner } => {
+            view.append(&mut airborne(inner));
+            *tc
+        }
+        ME::BDS09(inner) => {
+            view.append(&mut velocity(inner));
+            19
+        }
+        ME::Reserved0(_) => 23,
+        ME::SurfaceSystemStatus(_) => 24,
+        ME::Reserved1 { _id, .. } => *_id,
+        ME::BDS61(_) => 28,
+        ME::BDS62(_) => 29,
+        ME::AircraftOperationalCoordination(_) => 30,
+        ME::BDS65(_) => 31,
+    };
+    view.insert(Field::TypeCode, Said::Whole(type_code.into()));
+    view
+}
+
+/// A callsign without spaces; an empty one is none.
+pub fn callsign(text: &str) -> Said {
+    let text: String = text.chars().filter(|&c| c != ' ').collect();
+    if text.is_empty() {
+        Said::Nothing
+    } else {
+        Said::Text(text)
+    }
+}
+
+fn surface(position: &SurfacePosition) -> View {
+    View::from([
+        (Field::GroundSpeed, Said::real(position.groundspeed)),
+        (Field::Track, Said::real(position.track)),
+        (Field::UtcSynchronised, Said::Whole(position.t.into())),
+        (Field::CprIsOdd, is_odd(position.parity)),
+        (Field::CprLatitude, Said::Whole(position.lat_cpr.into())),
+        (Field::CprLongitude, Said::Whole(position.lon_cpr.into())),
+    ])
+}
+
+fn airborne(position: &AirbornePosition) -> View {
+    let is_gnss = position.alt.map(|_| position.source == Source::Gnss);
+    View::from([
+        (Field::SurveillanceStatus, Said::Whole(position.ss as i64)),
+        (Field::Altitude, Said::whole(position.alt)),
+        (Field::AltitudeSource, Said::whole(is_gnss)),
+        (
+            Field::UtcSynchronised,
+            Said::Whole(position.time_sync.into()),
+        ),
+        (Field::CprIsOdd, is_odd(position.parity)),
+        (Field::CprLatitude, Said::Whole(position.lat_cpr.into())),
+        (Field::CprLongitude, Said::Whole(position.lon_cpr.into())),
+    ])
+}
+
+fn is_odd(format: CPRFormat) -> Said {
+    Said::Whole((format == CPRFormat::Odd).into())
+}
+
+fn velocity(velocity: &AirborneVelocity) -> View {
+    let is_barometric = velocity
+        .vertical_rate
+        .map(|_| velocity.vrate_src == VerticalRateSource::BarometricPressureAltitude);
+    let mut view = View::from([
+        (Field::Nacv, Said::Whole(velocity.nac_v.into())),
+        (Field::VerticalRate, Said::whole(velocity.vertical_rate)),
+        (Field::VerticalRateIsBarometric, Said::whole(is_barometric)),
+        (Field::GnssMinusBaro, Said::whole(velocity.geo_minus_baro)),
+    ]);
+    let is_true = |kind: &AirspeedType| *kind == AirspeedType::TAS;
+    match &velocity.velocity {
+        AirborneVelocitySubType::GroundSpeedDecoding(ground) => {
+            view.insert(Field::GroundSpeed, Said::Real(ground.groundspeed));
+            view.insert(Field::Track, Said::Real(ground.track));
+        }
+        AirborneVelocitySubType::AirspeedSubsonic(air) => {
+            view.insert(Field::Heading, Said::real(air.heading));
+            view.insert(Field::Airspeed, Said::whole(air.airspeed));
+            let is_true = air.airspeed.map(|_| is_true(&air.airspeed_type));
+            view.insert(Field::AirspeedIsTrue, Said::whole(is_true));
+        }
+        AirborneVelocitySubType::AirspeedSupersonic(air) => {
+            view.insert(Field::Heading, Said::real(air.heading.map(f64::from)));
+            view.insert(Field::Airspeed, Said::whole(air.airspeed));
+            let is_true = air.airspeed.map(|_| is_true(&air.airspeed_type));
+            view.insert(Field::AirspeedIsTrue, Said::whole(is_true));
+        }
+        AirborneVelocitySubType::Reserved0(_) | AirborneVelocitySubType::Reserved1(_) => {}
+    }
+    view
+}
