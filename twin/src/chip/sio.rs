@@ -135,7 +135,7 @@ impl Sio {
                 _ => *word ^= value,
             }
         }
-        let how = offset / 4 & 3;
+        let how = (offset / 4) & 3;
         let d = &mut self.dividers[core];
         match offset {
             0x10..=0x1c => store(&mut self.out, how, value),

@@ -1,0 +1,433 @@
+//! The bus: address map, memories, and peripherals that advance together.
+//!
+//! Source: RP2040 datasheet 2.2 (address map), 2.1 (bus fabric, atomic aliases), 2.14 (RESETS).
+//!
+//! Peripherals stand at cycle [`Bus::now`]. A core may run ahead of it within a slice; whenever it touches a peripheral the bus first
+//! advances everything to that core's own time, so that what it reads is exact. Between such moments nothing is computed: each
+//! peripheral names the cycle of its next event.
+//!
+//! What is not modelled is an [`Fault`] that names the register, never a silent zero. So is the use of a peripheral held in reset.
+//!
+//! Not modelled: bus contention, XIP cache misses (cycle counts are optimistic for code in flash), SRAM banks.
+
+mod cores;
+mod fault;
+mod peripherals;
+mod ppb;
+mod transfers;
+
+pub use fault::{Fault, ResetCause};
+
+use rp2040_emu::bus::ppb::Ppb;
+use rp2040_emu::core::Nvic;
+
+use super::clocks::Clocks;
+use super::dma::Dma;
+use super::flash::Flash;
+use super::pins::{Drivers, Pins};
+use super::pio::Pio;
+use super::pwm::Pwm;
+use super::sio::Sio;
+use super::timer::{Timer, Watchdog};
+use super::uart::Uart;
+use super::usb::{DPRAM, Usb};
+use super::usb_host::UsbHost;
+
+/// SRAM: four striped 64 KiB banks and two of 4 KiB (datasheet 2.6.2).
+pub const SRAM: usize = 264 * 1024;
+const SRAM_BASE: u32 = 0x2000_0000;
+/// Granule in which the bus remembers where code was fetched from SRAM.
+const CODE_GRANULE: usize = 256;
+/// Mask ROM.
+pub const ROM: usize = 16 * 1024;
+
+/// RESETS bits of what the model resets.
+mod reset {
+    pub const DMA: u32 = 1 << 2;
+    pub const IO_BANK0: u32 = 1 << 5;
+    pub const PADS_BANK0: u32 = 1 << 8;
+    pub const PIO0: u32 = 1 << 10;
+    pub const PIO1: u32 = 1 << 11;
+    pub const PLL_SYS: u32 = 1 << 12;
+    pub const PLL_USB: u32 = 1 << 13;
+    pub const PWM: u32 = 1 << 14;
+    pub const TIMER: u32 = 1 << 21;
+    pub const UART0: u32 = 1 << 22;
+    pub const UART1: u32 = 1 << 23;
+    pub const USBCTRL: u32 = 1 << 24;
+    pub const ALL: u32 = 0x01ff_ffff;
+}
+
+/// IRQ numbers (datasheet 2.3.2).
+mod irq {
+    pub const TIMER_0: u32 = 0;
+    pub const USBCTRL: u32 = 5;
+    pub const PIO0_0: u32 = 7;
+    pub const DMA_0: u32 = 11;
+    pub const IO_BANK0: u32 = 13;
+    pub const SIO_PROC0: u32 = 15;
+    pub const UART0: u32 = 20;
+}
+
+/// Memories, peripherals, and the state both cores share.
+pub struct Bus {
+    pub rom: Vec<u8>,
+    pub flash: Flash,
+    pub sram: Vec<u8>,
+    /// Peripherals have been advanced to this cycle.
+    pub now: u64,
+    /// Time of the core that is executing, and which one it is.
+    pub core_time: u64,
+    pub active: usize,
+    pub active_pc: u32,
+    /// Something in the last instruction wants more than the inner loop does.
+    pub attention: bool,
+    /// The last instruction was in ROM.
+    pub rom_called: bool,
+    /// Instructions core 1 executed, and data it read, from flash since it was started by the program.
+    pub core1_xip: u64,
+    /// The address of the first of them.
+    pub core1_xip_first: u32,
+    pub ppb: [Ppb; 2],
+    pub nvic: [Nvic; 2],
+    pub event: [bool; 2],
+    pub event_time: u64,
+    pub wfe: [bool; 2],
+    bus_fault: Option<u32>,
+    pub fault: Option<Fault>,
+    pub reset_request: Option<ResetCause>,
+    pub core1_forced_off: bool,
+    /// Core 0 pushed a word to a core 1 that still waits in ROM.
+    pub core1_launching: bool,
+    pub stale_code: Vec<u32>,
+    code: Vec<bool>,
+    lines: [u32; 2],
+    /// Interrupt lines may have changed since they were computed.
+    lines_dirty: bool,
+    /// No peripheral has anything to do before this cycle; zero while that is not known.
+    quiet_until: u64,
+    /// Cycle at which a sleeping core's wake-up became pending.
+    pub wake_at: [Option<u64>; 2],
+    /// Set for cores that sleep; the bus then watches their lines.
+    pub asleep: [bool; 2],
+    dma_at: u64,
+    pub pio: [Pio; 2],
+    pub dma: Dma,
+    pub uart: [Uart; 2],
+    pub timer: Timer,
+    pub watchdog: Watchdog,
+    pub clocks: Clocks,
+    pub sio: Sio,
+    pub pins: Pins,
+    pub pwm: Pwm,
+    pub usb: Usb,
+    pub usb_host: UsbHost,
+    resets: u32,
+    resets_wdsel: u32,
+    psm_off: u32,
+    pub psm_wdsel: u32,
+    chip_reset: u32,
+    storage: [u32; 8],
+    sys_hz: u64,
+    /// Picoseconds at cycle `since`, when the system clock last changed.
+    time_ps: u128,
+    since: u64,
+}
+
+/// Pin of the trigger level's PWM (board table), and the supply its duty is a share of.
+const TRIGGER_LEVEL_GPIO: usize = 25;
+const SUPPLY_MV: f64 = 3300.0;
+
+impl Bus {
+    /// A chip with `flash`, at power-on.
+    pub fn new(flash: Flash) -> Self {
+        let mut bus = Self {
+            rom: vec![0; ROM],
+            flash,
+            sram: vec![0; SRAM],
+            now: 0,
+            core_time: 0,
+            active: 0,
+            active_pc: 0,
+            attention: false,
+            rom_called: false,
+            core1_xip: 0,
+            core1_xip_first: 0,
+            ppb: [Ppb::new(), Ppb::new()],
+            nvic: [Nvic::new(), Nvic::new()],
+            event: [false; 2],
+            event_time: 0,
+            wfe: [false; 2],
+            bus_fault: None,
+            fault: None,
+            reset_request: None,
+            core1_forced_off: false,
+            core1_launching: false,
+            stale_code: Vec::new(),
+            code: vec![false; SRAM / CODE_GRANULE],
+            lines: [0; 2],
+            lines_dirty: true,
+            quiet_until: 0,
+            wake_at: [None; 2],
+            asleep: [false; 2],
+            dma_at: u64::MAX,
+            pio: [Pio::new(), Pio::new()],
+            dma: Dma::default(),
+            uart: [Uart::default(), Uart::default()],
+            timer: Timer::default(),
+            watchdog: Watchdog::default(),
+            clocks: Clocks::default(),
+            sio: Sio::default(),
+            pins: Pins::new(),
+            pwm: Pwm::default(),
+            usb: Usb::default(),
+            usb_host: UsbHost::default(),
+            resets: reset::ALL,
+            resets_wdsel: 0,
+            psm_off: 0,
+            psm_wdsel: 0,
+            chip_reset: 1 << 8,
+            storage: [0; 8],
+            sys_hz: 0,
+            time_ps: 0,
+            since: 0,
+        };
+        bus.clocks_changed();
+        bus
+    }
+
+    /// Everything back to its reset state but what survives: memories, scratch words, what is attached outside.
+    pub fn reset(&mut self, cause: ResetCause) {
+        self.apply_resets(reset::ALL);
+        self.resets = reset::ALL;
+        self.resets_wdsel = 0;
+        self.psm_off = 0;
+        self.psm_wdsel = 0;
+        self.flash.reset();
+        self.clocks.reset();
+        self.sio = Sio::default();
+        self.watchdog.reset(self.now);
+        match cause {
+            ResetCause::PowerOn => {
+                self.watchdog = Watchdog::default();
+                self.chip_reset = 1 << 8;
+                self.sram.fill(0);
+            }
+            ResetCause::Software => self.watchdog.reason = 0,
+            ResetCause::WatchdogTimer | ResetCause::WatchdogForced => {}
+        }
+        self.ppb = [Ppb::new(), Ppb::new()];
+        self.nvic = [Nvic::new(), Nvic::new()];
+        self.event = [false; 2];
+        self.wfe = [false; 2];
+        self.wake_at = [None; 2];
+        self.asleep = [false; 2];
+        self.lines = [0; 2];
+        self.lines_dirty = true;
+        self.quiet_until = 0;
+        self.storage = [0; 8];
+        self.core1_forced_off = false;
+        self.core1_launching = false;
+        self.code.fill(false);
+        self.stale_code.clear();
+        self.usb_host.device_reset();
+        self.resolve_pins();
+        self.clocks_changed();
+    }
+
+    /// System clock in Hz.
+    pub fn sys_hz(&self) -> u64 {
+        self.sys_hz
+    }
+
+    // ---- time --------------------------------------------------------------------------------------------------------------
+
+    /// Time since power-on in picoseconds.
+    pub fn time_ps(&self) -> u128 {
+        match self.sys_hz {
+            0 => self.time_ps,
+            hz => {
+                self.time_ps
+                    + u128::from(self.now - self.since) * 1_000_000_000_000 / u128::from(hz)
+            }
+        }
+    }
+
+    /// Hands the threshold that the PWM makes to the front end.
+    pub fn apply_trigger_level(&mut self) {
+        if self.pins.function(TRIGGER_LEVEL_GPIO) == 4
+            && let Some(duty) = self.pwm.duty(TRIGGER_LEVEL_GPIO)
+        {
+            self.pins.set_trigger_level_mv(duty * SUPPLY_MV);
+        }
+    }
+
+    fn clocks_changed(&mut self) {
+        self.time_ps = self.time_ps();
+        self.since = self.now;
+        self.sys_hz = self.clocks.sys_hz();
+        if self.sys_hz == 0 {
+            self.fault.get_or_insert(Fault::ClockStopped);
+            return;
+        }
+        let tick = match (self.watchdog.tick_divider(), self.clocks.ref_hz()) {
+            (Some(divider), hz) if hz > 0 => self.sys_hz * u64::from(divider) / hz,
+            _ => 0,
+        };
+        self.timer.set_tick(tick, self.now);
+        self.watchdog.set_tick(tick, self.now);
+    }
+
+    /// Cycle of the next event of any peripheral but PIO.
+    fn next_event(&self) -> u64 {
+        self.timer
+            .next_event()
+            .min(self.watchdog.next_event())
+            .min(self.uart[0].next_event())
+            .min(self.uart[1].next_event())
+            .min(self.usb_host.next_event())
+            .min(self.dma_at)
+    }
+
+    /// Brings all peripherals to cycle `to`.
+    pub fn advance(&mut self, to: u64) {
+        self.advance_until(to, false);
+    }
+
+    /// Brings all peripherals to cycle `to`, or only to the first cycle at which a sleeping core is woken if `stop_on_wake` is set.
+    pub fn advance_until(&mut self, to: u64, stop_on_wake: bool) {
+        if to <= self.now {
+            return;
+        }
+        if to < self.quiet_until {
+            self.now = to;
+            return;
+        }
+        if self.next_pio() <= to {
+            self.pins.look_ahead(to);
+        }
+        loop {
+            let event = self.next_event();
+            let mut limit = event.min(to);
+            // PIO runs to its first visible effect before the next event of anything else.
+            let (a, b) = (self.pio[0].next_tick(), self.pio[1].next_tick());
+            let mut visible = false;
+            if a.min(b) <= limit {
+                let (first, other) = if b < a { (1, a) } else { (0, b) };
+                let bound = limit.min(other);
+                limit = self.pio[first].run(bound, &mut self.pins);
+                visible = self.pio[first].take_visible();
+                if visible && self.pio[first].pad_oe != 0 {
+                    self.resolve_pins();
+                }
+            }
+            self.now = self.now.max(limit);
+            if visible || event <= self.now {
+                self.fire();
+                if stop_on_wake && self.wake_at != [None; 2] {
+                    break;
+                }
+            }
+            if self.now >= to {
+                let next = self.next_event().min(self.next_pio());
+                if next > to {
+                    self.quiet_until = next;
+                    return;
+                }
+            }
+        }
+        self.quiet_until = 0;
+    }
+
+    fn next_pio(&self) -> u64 {
+        self.pio[0].next_tick().min(self.pio[1].next_tick())
+    }
+
+    /// Everything due at `now`, then the interrupt lines.
+    fn fire(&mut self) {
+        let now = self.now;
+        if self.timer.next_event() <= now {
+            self.timer.advance(now);
+        }
+        for u in &mut self.uart {
+            if u.next_event() <= now {
+                u.advance(now);
+            }
+        }
+        if self.usb_host.next_event() <= now {
+            let per_ms = self.sys_hz / 1000;
+            self.usb_host.advance(&mut self.usb, now, per_ms);
+        }
+        if self.watchdog.next_event() <= now
+            && self.watchdog.bites(now)
+            && self.reset_request.is_none()
+        {
+            self.reset_request = Some(ResetCause::WatchdogTimer);
+            // Bites once; the reset clears it.
+            let _ = self.watchdog.write(0, 0, now);
+        }
+        if self.dma.busy != 0 {
+            self.move_data();
+        } else {
+            self.dma_at = u64::MAX;
+        }
+        self.lines_dirty = true;
+        self.update_lines();
+    }
+
+    // ---- interrupts --------------------------------------------------------------------------------------------------------
+
+    fn compute_lines(&self) -> [u32; 2] {
+        let mut lines = self.timer.irq_lines() << irq::TIMER_0;
+        lines |= u32::from(self.usb.irq_line()) << irq::USBCTRL;
+        for block in 0..2 {
+            for line in 0..2 {
+                lines |= u32::from(self.pio[block].irq_line(line))
+                    << (irq::PIO0_0 + 2 * block as u32 + line as u32);
+            }
+            lines |= u32::from(self.dma.irq_line(block)) << (irq::DMA_0 + block as u32);
+            lines |= u32::from(self.uart[block].irq_line()) << (irq::UART0 + block as u32);
+        }
+        std::array::from_fn(|core| {
+            lines
+                | u32::from(self.pins.irq_line(core)) << irq::IO_BANK0
+                | u32::from(self.sio.irq_line(core)) << (irq::SIO_PROC0 + core as u32)
+        })
+    }
+
+    /// Level interrupts become pending unless their handler runs already; sleeping cores note when they were woken.
+    pub fn update_lines(&mut self) {
+        if std::mem::take(&mut self.lines_dirty) {
+            self.lines = self.compute_lines();
+        }
+        if self.lines == [0; 2] && self.asleep == [false; 2] {
+            return;
+        }
+        for core in 0..2 {
+            let active = (self.ppb[core].active >> 16) as u32;
+            self.nvic[core].pending |= self.lines[core] & !active;
+            if self.asleep[core] && self.wake_at[core].is_none() && self.can_wake(core) {
+                self.wake_at[core] = Some(self.now);
+            }
+        }
+    }
+
+    /// A sleeping core has a reason to go on.
+    pub fn can_wake(&self, core: usize) -> bool {
+        let interrupt = self.nvic[core].pending_and_enabled() != 0
+            || self.ppb[core].icsr & (1 << 28 | 1 << 26) != 0;
+        // WFE with interrupts masked needs SEVONPEND, which no image uses; an enabled pending interrupt wakes it as WFI.
+        interrupt || (self.wfe[core] && self.event[core])
+    }
+
+    // ---- pins --------------------------------------------------------------------------------------------------------------
+
+    fn resolve_pins(&mut self) {
+        let drivers = Drivers {
+            sio_out: self.sio.out,
+            sio_oe: self.sio.oe,
+            pio: [0, 1].map(|n| (self.pio[n].pad_out, self.pio[n].pad_oe)),
+        };
+        self.pins.resolve(&drivers);
+    }
+}

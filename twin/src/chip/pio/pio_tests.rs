@@ -1,0 +1,158 @@
+//! State machines against what the datasheet says of them, and the sampling shortcut against the full model.
+
+use super::*;
+use crate::front_end::{Edge, PulseSource};
+
+const PIN: u32 = 19;
+/// Autopush at 32 bits, RX FIFO joined, shifting left: what the firmware sets.
+const LEFT_32: u32 = 1 << 16 | 2 << 30;
+
+/// Edges at irregular times, for ever.
+struct Comb(u64);
+
+impl PulseSource for Comb {
+    fn next_edges(&mut self, until_ps: u64, out: &mut Vec<Edge>) {
+        while self.0 < until_ps {
+            self.0 += 90_000 + self.0 % 777_777;
+            out.push(Edge {
+                at_ps: self.0,
+                level: self.0.is_multiple_of(2),
+            });
+        }
+    }
+
+    fn finished(&self) -> bool {
+        false
+    }
+
+    fn set_trigger_level_mv(&mut self, _: f64) {}
+}
+
+/// A sampler like the firmware's; `spoiled` has a second instruction in its loop's place, so that the shortcut does not apply.
+fn sampler(shortcut: bool, shiftctrl: u32) -> (Pio, Pins) {
+    let (mut pio, mut pins) = (Pio::new(), Pins::new());
+    pins.play(Box::new(Comb(0)), PIN, 0);
+    pins.look_ahead(2_000_000);
+    pio.write(0x048, 0x4001, 0, &mut pins);
+    pio.write(0x0c8, 15 << 16, 0, &mut pins);
+    pio.write(0x0cc, 0, 0, &mut pins);
+    pio.write(0x0d0, shiftctrl, 0, &mut pins);
+    pio.write(0x0dc, PIN << 15, 0, &mut pins);
+    // A second state machine that only waits keeps the shortcut away.
+    if !shortcut {
+        pio.write(0x04c, 0x0001, 0, &mut pins);
+        pio.write(0x0c8 + 0x18, 0xffff_0000, 0, &mut pins);
+        pio.write(0x0d8 + 0x18, 0x0001, 0, &mut pins);
+    }
+    pio.write(0x000, if shortcut { 1 } else { 3 }, 0, &mut pins);
+    (pio, pins)
+}
+
+fn words(shortcut: bool, shiftctrl: u32) -> Vec<(u64, u32)> {
+    let (mut pio, mut pins) = sampler(shortcut, shiftctrl);
+    let mut words = Vec::new();
+    let mut now = 0;
+    while now < 1_000_000 {
+        now = pio.run(now + 100, &mut pins).max(now + 1);
+        while pio.rx_ready(0) {
+            words.push((now, pio.read(0x020).expect("RXF0")));
+        }
+    }
+    words
+}
+
+#[test]
+fn the_sampling_shortcut_gives_the_words_of_the_full_model_at_the_same_cycles() {
+    const RIGHT: u32 = 1 << 18;
+    for shiftctrl in [
+        LEFT_32,
+        LEFT_32 | RIGHT,
+        LEFT_32 | 7 << 20,
+        LEFT_32 | RIGHT | 12 << 20,
+    ] {
+        let (fast, full) = (words(true, shiftctrl), words(false, shiftctrl));
+        assert!(fast.len() > 2_000, "{}", fast.len());
+        assert!(fast.iter().any(|w| w.1 != 0 && w.1 != u32::MAX));
+        assert_eq!(fast, full, "SHIFTCTRL {shiftctrl:#x}");
+    }
+}
+
+#[test]
+fn a_full_receive_fifo_stalls_the_sampler_and_shows_in_fdebug() {
+    let (mut pio, mut pins) = sampler(true, LEFT_32);
+    let mut now = 0;
+    while now < 480 * 8 {
+        now = pio.run(480 * 8, &mut pins);
+    }
+    assert_eq!(pio.read(0x008), Some(0));
+    while now < 480 * 10 {
+        now = pio.run(480 * 10, &mut pins);
+    }
+    assert_eq!(pio.read(0x008), Some(1), "RXSTALL of state machine 0");
+    assert_eq!(
+        pio.read(0x00c),
+        Some(8 << 4),
+        "eight words in the joined FIFO"
+    );
+}
+
+#[test]
+fn a_fractional_divider_ticks_on_average_at_its_rate() {
+    let (mut pio, mut pins) = sampler(true, LEFT_32);
+    // 7 + 208/256 cycles: 125 MHz / 16 MHz of the datasheet's examples.
+    pio.write(0x0c8, 7 << 16 | 208 << 8, 0, &mut pins);
+    pio.write(0x0d0, 1 << 16 | 8 << 20 | 2 << 30, 0, &mut pins);
+    let (mut now, mut bytes) = (0, 0);
+    while now < 125_000 {
+        now = pio.run(125_000, &mut pins);
+        while pio.rx_ready(0) {
+            pio.read(0x020);
+            bytes += 1;
+        }
+    }
+    assert_eq!(bytes, 2_000);
+}
+
+#[test]
+fn an_irq_wait_goes_on_once_another_clears_its_flag() {
+    let (mut pio, mut pins) = (Pio::new(), Pins::new());
+    // irq wait 0; set x, 5; jmp 2
+    for (n, word) in [0xc020, 0xe025, 0x0002].into_iter().enumerate() {
+        pio.write(0x048 + 4 * n as u32, word, 0, &mut pins);
+    }
+    pio.write(0x000, 1, 0, &mut pins);
+    let mut now = 0;
+    while now < 20 {
+        now = pio.run(20, &mut pins);
+    }
+    assert_eq!(
+        (pio.read(0x030), pio.read(0x0d4)),
+        (Some(1), Some(0)),
+        "raised and waiting"
+    );
+    pio.write(0x030, 1, 20, &mut pins);
+    while now < 40 {
+        now = pio.run(40, &mut pins);
+    }
+    assert_eq!((pio.read(0x030), pio.read(0x0d4)), (Some(0), Some(2)));
+}
+
+#[test]
+fn side_set_with_its_enable_bit_drives_only_where_asked() {
+    let (mut pio, mut pins) = (Pio::new(), Pins::new());
+    // .side_set 1 opt: nop side 1; nop; nop side 0
+    for (n, word) in [0xb842, 0xa042, 0xb042].into_iter().enumerate() {
+        pio.write(0x048 + 4 * n as u32, word, 0, &mut pins);
+    }
+    pio.write(0x0cc, 1 << 30 | 2 << 12, 0, &mut pins);
+    pio.write(0x0dc, 2 << 29 | 22 << 10, 0, &mut pins);
+    pio.write(0x000, 1, 0, &mut pins);
+    let mut trace = Vec::new();
+    for cycle in 1..=6 {
+        while pio.next_tick() <= cycle {
+            pio.run(cycle, &mut pins);
+        }
+        trace.push(pio.pad_out >> 22 & 1);
+    }
+    assert_eq!(trace, [1, 1, 0, 1, 1, 0]);
+}
