@@ -17,6 +17,8 @@ use crate::{Failure, device, radio};
 
 /// Emulated time between two looks at the ports, in milliseconds.
 const STEP_MS: u64 = 5;
+/// The device is left running this long after the end of what it hears, in milliseconds.
+const TAIL_MS: u64 = 1_100;
 /// Time between the messages of a log that has no times, in picoseconds: 1 ms.
 const SPACING_PS: u64 = 1_000_000_000;
 
@@ -160,16 +162,25 @@ fn programme(matches: &ArgMatches) -> Result<Option<Programme>, Failure> {
     }))
 }
 
-/// Messages of a log that begin within its first `seconds`.
-fn offered(log: &Path, seconds: f64) -> Result<u64, Failure> {
+/// What a log holds for its first `seconds`.
+struct Offered {
+    messages: u64,
+    /// Lines up to there that are no messages.
+    refused_lines: u64,
+}
+
+fn offered(log: &Path, seconds: f64) -> Result<Offered, Failure> {
     let end = (seconds * 1e12) as u64;
-    let mut messages = MessageLog::open(log, SPACING_PS)?;
+    let mut log = MessageLog::open(log, SPACING_PS)?;
     let mut first = None;
-    let n = messages
+    let messages = log
         .by_ref()
         .take_while(|m| m.at_ps - *first.get_or_insert(m.at_ps) < end)
-        .count();
-    Ok(n as u64)
+        .count() as u64;
+    Ok(Offered {
+        messages,
+        refused_lines: log.refused(),
+    })
 }
 
 /// Prints the console and notes which aircraft it names.
@@ -240,11 +251,16 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
     let began = Instant::now();
     let started = board.seconds();
     let elapsed = |board: &Board| board.seconds() - started;
+    // Without a limit a finite source ends the run, once the second that holds its end has been reported.
+    let mut left_ms = TAIL_MS;
     while !stop.load(Ordering::Relaxed)
         && limit.is_none_or(|s| elapsed(&board) < s as f64)
-        && !(limit.is_none() && finite && board.playback_finished())
+        && left_ms > 0
     {
         board.run_ms(STEP_MS)?;
+        if limit.is_none() && finite && board.playback_finished() {
+            left_ms -= STEP_MS;
+        }
         exchange(&mut board, &mut console, ports.as_mut())?;
         if realtime {
             let ahead = elapsed(&board) - began.elapsed().as_secs_f64();
@@ -262,7 +278,14 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
     }
     let played = (device_time - PRE_ROLL_PS as f64 * 1e-12).max(0.0);
     let offered = log.map(|log| offered(&log, played)).transpose()?;
-    summary(&stats, &console, offered, device_time, wall, ports.as_ref());
+    summary(
+        &stats,
+        &console,
+        offered.as_ref(),
+        device_time,
+        wall,
+        ports.as_ref(),
+    );
     Ok(())
 }
 
@@ -293,7 +316,7 @@ fn exchange(
 fn summary(
     stats: &str,
     console: &Console,
-    offered: Option<u64>,
+    offered: Option<&Offered>,
     device_time: f64,
     wall: f64,
     ports: Option<&Ports>,
@@ -309,9 +332,15 @@ fn summary(
     eprintln!();
     eprintln!("aircraft heard  {aircraft}");
     match offered {
-        Some(offered) => {
-            let share = 100.0 * decoded as f64 / (offered.max(1)) as f64;
-            eprintln!("frames offered  {offered}");
+        Some(Offered {
+            messages,
+            refused_lines,
+        }) => {
+            let share = 100.0 * decoded as f64 / (*messages).max(1) as f64;
+            if *refused_lines > 0 {
+                eprintln!("lines refused   {refused_lines}, they are no messages");
+            }
+            eprintln!("frames offered  {messages}");
             eprintln!("frames decoded  {decoded} ({share:.1} %)");
         }
         None => eprintln!("frames decoded  {decoded}"),

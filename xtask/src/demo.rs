@@ -40,12 +40,20 @@ pub fn run(arguments: &[&str]) -> Result<(), String> {
     } else {
         fw::run()?;
     }
-    let root = workspace::root()?;
-    let mut command = Command::new(env!("CARGO"));
-    command.current_dir(std::env::current_dir().map_err(|e| format!("no current folder: {e}"))?);
-    command.args(["run", "--quiet", "--release", "--manifest-path"]);
-    command.arg(root.join("Cargo.toml"));
-    command.args(["-p", "cli", "--", "twin"]);
+    // Built by a step of its own, so that a first build shows its progress.
+    let manifest = workspace::root()?.join("Cargo.toml");
+    let cargo = |subcommand: &str| {
+        let mut command = Command::new(env!("CARGO"));
+        command
+            .arg(subcommand)
+            .arg("--manifest-path")
+            .arg(&manifest);
+        command.args(["--release", "-p", "cli"]);
+        command
+    };
+    workspace::run(&mut cargo("build"))?;
+    let mut command = cargo("run");
+    command.args(["--quiet", "--", "twin"]);
     if !asks_for_help {
         if !has_file(arguments) {
             let log = log()?;

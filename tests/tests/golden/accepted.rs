@@ -83,7 +83,7 @@ pub static ACCEPTED: &[Accepted] = &[
     },
     Accepted {
         peer: Peer::AdsbDeku,
-        reason: "adsb_deku reads source bit 0 of the vertical rate as barometric (rs1090 has it from there); see above",
+        reason: "adsb_deku reads source bit 0 of the vertical rate as barometric, as rs1090 does, which began as its fork",
         applies: is_inverted_source,
         counts: [10450, 25120],
     },

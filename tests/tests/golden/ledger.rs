@@ -148,15 +148,20 @@ impl Ledger {
     }
 }
 
-/// Whether two readings of a field say the same. Ours are rounded: speeds to a knot, angles to 0.01 degrees.
+/// Our ground speeds are rounded to a knot.
+const SPEED_ROUNDING_KT: f64 = 0.501;
+/// Our angles are rounded to 0.01 degrees, and CORDIC adds as much again.
+const ANGLE_ROUNDING_DEGREES: f64 = 0.015;
+
+/// Whether two readings of a field say the same.
 pub fn is_same(field: Field, ours: &Said, theirs: &Said) -> bool {
     let (Some(a), Some(b)) = (ours.number(), theirs.number()) else {
         return ours == theirs;
     };
     let away = (a - b).abs();
     match field {
-        Field::GroundSpeed => away <= 0.501,
-        Field::Track | Field::Heading => away.min(360.0 - away) <= 0.015,
+        Field::GroundSpeed => away <= SPEED_ROUNDING_KT,
+        Field::Track | Field::Heading => away.min(360.0 - away) <= ANGLE_ROUNDING_DEGREES,
         _ => away == 0.0,
     }
 }

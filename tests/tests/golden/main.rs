@@ -9,9 +9,10 @@
 //! ```
 //! A difference is accepted only by a line in `accepted.rs`, with its reason and its exact count; any other one fails, and so does a
 //! count that moved. What it is not: it tells nothing of reception (both logs hold bytes) and nothing of fields that neither peer
-//! reads (NIC, on ground of DF11). The peers share ancestry: a reading both have from the same place counts as one opinion.
+//! reads (NIC, on ground of DF11). rs1090 began as a fork of adsb_deku: a reading that both inherited counts as one opinion.
 
 mod accepted;
+mod height;
 mod ledger;
 mod logs;
 mod peer_adsb_deku;

@@ -1,4 +1,4 @@
-//! What rs1090 0.7 reads in a frame. It grew out of adsb_deku; its altitude, velocity, CPR and parity code is its own by now.
+//! What rs1090 0.7 reads in a frame. By its own account it began as a fork of adsb_deku and was revised throughout since.
 
 use crate::view::{Field, Said, View};
 use mode_s::Frame;
