@@ -50,13 +50,13 @@ counters! {
     overruns,
     /// Phases the gate let through.
     candidates,
-    /// Candidates within a sample or two of one that was tried, or inside an accepted frame.
+    /// Candidates right behind one that was asked for bits or tried, or inside an accepted frame.
     superseded,
-    /// Candidates that look too little like a preamble.
+    /// Candidates with no bits behind them, or that look too little like a preamble.
     rejected_by_score,
     /// Candidates that were demodulated at all their phases.
     demodulated,
-    /// The first 16 bits have no pulses in their halves: data ended, or noise.
+    /// The first 16 bits are too unsure at every phase: data ended, or noise.
     no_bits,
     /// Demodulated, but no DF that exists.
     bad_format,

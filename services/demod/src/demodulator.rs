@@ -3,10 +3,11 @@
 //! ```text
 //!   word n ─ gate ─ phases ─ for each, oldest first:
 //!        inside an accepted frame, or tried already ──────────────► superseded
-//!        too many mismatches with a preamble ───────────────────────────────────► rejected_by_score
+//!        no bits behind it ───────────────────────────────────────► rejected_by_score (and the hit right behind it: superseded)
+//!        too many mismatches with a preamble at every phase ──────► rejected_by_score
 //!        demodulated at the phase and its neighbours:
-//!            the first 16 bits are no bits ───────────────────────► no_bits
 //!            no such DF ──────────────────────────────────────────► bad_format
+//!            the first 16 bits are too unsure ────────────────────► no_bits
 //!            DF11 17 18 19, residual not 0 ───────────────────────► bad_parity
 //!            DF11 with code, or address parity, address not heard ► unknown_address
 //!            the same, heard, but its bits hang by a thread ──────► unsure
@@ -22,7 +23,7 @@ use crate::counters::{Counters, add};
 use crate::gate::Half;
 use crate::heard::Heard;
 use crate::ring::{Aligned, RING_WORDS, SampleRing};
-use crate::score::{MOST_MISMATCHES, mismatches};
+use crate::score::{MOST_MISMATCHES, bits_follow, mismatches, ones};
 use crate::{SAMPLES_PER_WORD, TICKS_PER_SAMPLE};
 use mode_s::Frame;
 use mode_s::crc24;
@@ -48,8 +49,8 @@ const LEAST_CERTAINTY: u32 = 22;
 /// a known address. Noise has a mean near 1.1.
 const LEAST_CERTAINTY_QUARTERS: u32 = 7;
 
-/// Phases tried around a candidate, nearest first.
-const PHASES: [i32; 4] = [0, 1, -1, 2];
+/// Phases tried around a candidate, the likeliest first: the gate's first hit is early, most frames start a sample or two behind it.
+const PHASES: [i32; 4] = [1, 2, 0, -1];
 
 /// A frame whose parity fits, and when it came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +85,9 @@ pub struct Demodulator {
     /// First sample (from the start of capture) that is not behind an accepted frame or a tried candidate.
     free_from: u64,
     heard: Heard,
+    /// The gate's half preamble of the word `gated_to`, and the word after that: what need not be gated twice.
+    gated: (Half, u32),
+    gated_to: u32,
 }
 
 impl Demodulator {
@@ -93,6 +97,8 @@ impl Demodulator {
             next: 0,
             free_from: 0,
             heard: Heard::new(),
+            gated: (Half::NONE, 0),
+            gated_to: u32::MAX,
         }
     }
 
@@ -125,66 +131,94 @@ impl Demodulator {
         self.next = from;
     }
 
-    /// Gates words until one has a hit, or no more can be looked at. The word with the hit is `self.next`.
+    /// Gates words until one has a hit behind which bits follow, or no more can be looked at. Gives the hits from that one on; their word is
+    /// `self.next`.
     #[inline(never)]
     fn find(&mut self, ring: &SampleRing, written: u64, counters: &Counters) -> Option<u32> {
         let ready = written.saturating_sub(self.next + u64::from(LOOKAHEAD_WORDS)) as u32;
         let first = self.next as u32;
         let end = first.wrapping_add(ready);
         let mut index = first;
-        let mut after = ring.word(index.wrapping_add(1));
-        let mut half = Half::of(ring.word(index), after);
+        let (mut half, mut after) = if self.gated_to == first {
+            self.gated
+        } else {
+            let after = ring.word(index.wrapping_add(1));
+            (Half::of(ring.word(index), after), after)
+        };
         let mut found = None;
         while index != end {
             let newest = ring.word(index.wrapping_add(2));
             let next = Half::of(after, newest);
             let hits = half.hits(next);
-            if hits != 0 {
-                found = Some(hits);
-                break;
-            }
-            index = index.wrapping_add(1);
             after = newest;
             half = next;
+            if hits != 0 {
+                let rest = self.sift(ring, index, hits, index == first, counters);
+                if rest != 0 {
+                    found = Some(rest);
+                    break;
+                }
+            }
+            index = index.wrapping_add(1);
         }
+        // The gate's state is that of the next word.
+        self.gated = (half, after);
+        self.gated_to = if found.is_some() {
+            index.wrapping_add(1)
+        } else {
+            index
+        };
         let passed = index.wrapping_sub(first);
         self.next += u64::from(passed);
         add(&counters.words, passed);
         found
     }
 
-    /// Tries the hits of the word `self.next` until one is a frame, and steps on.
+    /// Counts a word's hits, and passes over those that were tried before or have no bits behind them.
+    #[inline(never)]
+    fn sift(
+        &self,
+        ring: &SampleRing,
+        word: u32,
+        hits: u32,
+        is_first: bool,
+        counters: &Counters,
+    ) -> u32 {
+        add(&counters.candidates, ones(hits));
+        let mut fresh = hits;
+        // What was tried or accepted reaches into the first word at most.
+        if is_first {
+            let start = self.next * u64::from(SAMPLES_PER_WORD);
+            let taken = self.free_from.saturating_sub(start);
+            fresh = from_phase(hits, taken.min(u64::from(SAMPLES_PER_WORD)) as u32);
+            add(&counters.superseded, ones(hits ^ fresh));
+        }
+        first_with_bits(ring, word, fresh, counters)
+    }
+
+    /// Tries the hits of the word `self.next`, the first of which has bits behind it, until one is a frame, and steps on.
     #[inline(never)]
     fn examine(&mut self, ring: &SampleRing, hits: u32, counters: &Counters) -> Option<RawFrame> {
         let word = self.next;
         let start = word * u64::from(SAMPLES_PER_WORD);
         let mut rest = hits;
-        let mut at = 0;
         let mut bytes = [0; LONG_BYTES];
         let mut accepted = None;
-        add(&counters.candidates, hits.count_ones());
         while rest != 0 {
-            // Phase by phase: the core has no instruction to count leading zeros, and the library's is not in SRAM.
-            let sample = at;
-            let hit = rest & 0x8000_0000 != 0;
-            rest <<= 1;
-            at += 1;
-            if !hit {
-                continue;
-            }
-            if start + u64::from(sample) < self.free_from {
-                add(&counters.superseded, 1);
-                continue;
-            }
+            let sample = first_phase(rest);
             let Some((outcome, phase)) =
                 try_phases(ring, word as u32, sample, &self.heard, &mut bytes)
             else {
                 add(&counters.rejected_by_score, 1);
+                rest = first_with_bits(ring, word as u32, from_phase(rest, sample + 1), counters);
                 continue;
             };
             add(&counters.demodulated, 1);
             // The neighbours were tried with it.
-            self.free_from = start + u64::from(sample) + 2;
+            self.free_from = start + u64::from(sample + 2);
+            let others = from_phase(rest, sample + 1);
+            rest = from_phase(rest, sample + 2);
+            add(&counters.superseded, u32::from(others != rest));
             add(
                 match outcome {
                     Outcome::NoBits => &counters.no_bits,
@@ -199,10 +233,11 @@ impl Demodulator {
                 1,
             );
             if outcome < Outcome::Address {
+                rest = first_with_bits(ring, word as u32, rest, counters);
                 continue;
             }
             let Ok(frame) = Frame::from_bytes(received(&bytes)) else {
-                continue;
+                break;
             };
             if let (Outcome::Exact, Some(mode_s::Address::Icao(icao))) =
                 (outcome, mode_s::Parity::of(&frame).address())
@@ -213,6 +248,9 @@ impl Demodulator {
             let first = (start + u64::from(sample)).saturating_add_signed(i64::from(phase));
             let bits = received(&bytes).len() as u32 * 8;
             self.free_from = first + u64::from(PREAMBLE_SAMPLES + BIT_SAMPLES * bits);
+            // A frame is longer than a word.
+            add(&counters.superseded, ones(rest));
+            rest = 0;
             accepted = Some(RawFrame {
                 frame,
                 arrival: ticks(first),
@@ -259,7 +297,51 @@ fn from_sample(ring: &SampleRing, word: u32, sample: u32) -> Aligned<'_> {
     )
 }
 
+/// The hits from phase `sample` of a word on.
+#[inline(always)]
+fn from_phase(hits: u32, sample: u32) -> u32 {
+    hits & u32::MAX.checked_shr(sample).unwrap_or(0)
+}
+
+/// The phase of the first hit; there is one. The core has no instruction to count leading zeros, and the library's is not in SRAM.
+#[inline(always)]
+fn first_phase(hits: u32) -> u32 {
+    let mut rest = hits;
+    let mut phase = 0;
+    while rest >> 24 == 0 {
+        rest <<= 8;
+        phase += 8;
+    }
+    while rest & 0x8000_0000 == 0 {
+        rest <<= 1;
+        phase += 1;
+    }
+    phase
+}
+
+/// The hits from the first one on behind which bits follow; the others are counted as rejected.
+#[inline(never)]
+fn first_with_bits(ring: &SampleRing, word: u32, hits: u32, counters: &Counters) -> u32 {
+    let mut rest = hits;
+    while rest != 0 {
+        let sample = first_phase(rest);
+        let mut data = Aligned::new(ring, word, sample + PREAMBLE_SAMPLES + 1);
+        if bits_follow(&mut data) {
+            break;
+        }
+        add(&counters.rejected_by_score, 1);
+        // The next phase would see the same.
+        let others = from_phase(rest, sample + 1);
+        rest = from_phase(rest, sample + 2);
+        if others != rest {
+            add(&counters.superseded, 1);
+        }
+    }
+    rest
+}
+
 /// The best that a candidate and its neighbours give: outcome and phase, and its bytes. `None` when no phase looks like a preamble.
+#[inline(never)]
 fn try_phases(
     ring: &SampleRing,
     word: u32,
@@ -274,7 +356,7 @@ fn try_phases(
         if mismatches(samples.take(), samples.take()) > MOST_MISMATCHES {
             continue;
         }
-        let outcome = demodulate(&mut samples, heard, bytes);
+        let outcome = demodulate(samples, heard, bytes);
         last = phase;
         if best.is_none_or(|(so_far, _)| outcome > so_far) {
             best = Some((outcome, phase));
@@ -291,7 +373,7 @@ fn try_phases(
         let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
         samples.take();
         samples.take();
-        demodulate(&mut samples, heard, bytes);
+        demodulate(samples, heard, bytes);
     }
     best
 }
@@ -312,17 +394,17 @@ fn leading_phase(ring: &SampleRing, word: u32, sample: u32) -> i32 {
 
 /// Demodulates one phase and judges it. `samples` stands at the first bit.
 #[inline(never)]
-fn demodulate(samples: &mut Aligned, heard: &Heard, bytes: &mut [u8; LONG_BYTES]) -> Outcome {
-    let from = *samples;
-    let (first, sure_of_first) = bits::byte_and_certainty(samples);
-    let (second, sure_of_second) = bits::byte_and_certainty(samples);
-    if sure_of_first + sure_of_second < LEAST_CERTAINTY {
-        return Outcome::NoBits;
-    }
+fn demodulate(from: Aligned, heard: &Heard, bytes: &mut [u8; LONG_BYTES]) -> Outcome {
+    let mut samples = from;
+    let (first, sure_of_first) = bits::byte_and_certainty(&mut samples);
     // DF 0, 4, 5, 11, 16 to 21 and 24 to 31 exist.
     const FORMATS: u32 = 0xFF3F_0831;
     if FORMATS >> (first >> 3) & 1 == 0 {
         return Outcome::BadFormat;
+    }
+    let (second, sure_of_second) = bits::byte_and_certainty(&mut samples);
+    if sure_of_first + sure_of_second < LEAST_CERTAINTY {
+        return Outcome::NoBits;
     }
     let length = if first & 0x80 != 0 {
         LONG_BYTES
@@ -330,7 +412,7 @@ fn demodulate(samples: &mut Aligned, heard: &Heard, bytes: &mut [u8; LONG_BYTES]
         SHORT_BYTES
     };
     for byte in bytes.iter_mut().take(length).skip(2) {
-        *byte = bits::byte(samples);
+        *byte = bits::byte(&mut samples);
     }
     bytes[0] = first;
     bytes[1] = second;

@@ -11,14 +11,16 @@
 //! ```
 //!
 //! ```text
-//!  ring ─ gate (every word, 32 phases at once) ─ score (a gate hit) ─ demodulation (three phases) ─ parity ─ RawFrame
+//!  ring ─ gate (every word, 32 phases at once) ─ bits behind a hit? ─ preamble score ─ demodulation (four phases) ─ parity ─ RawFrame
 //! ```
 //!
 //! Not here: error correction (`RawFrame::repaired` keeps its place), arrival times finer than a sample, signal levels, and what
 //! the frame says (`mode-s`).
 //!
-//! Budget on the Cortex-M0+ at 120 MHz, where a word lasts 480 cycles: the gate 169 cycles a word (counted in the disassembly), a score
-//! about 100 a phase, a demodulated phase about 1 500 with its parity. Memory: ring 8 KiB, addresses heard 4 KiB.
+//! Budget on the Cortex-M0+ at 120 MHz, where a word lasts 480 cycles, as the twin counts it on the strong recording of one aircraft (1 760 frames and
+//! 70 000 gate hits a second): the gate 162 cycles a word, the search for bits behind a hit 290, a candidate that has them 4 200 with all its phases and
+//! their parity. In all 67 % of the core; 90 % on the dense clip whose
+//! noise crosses the threshold half the time, where half of the hits seem to have bits behind them. Memory: ring 8 KiB, addresses heard 4 KiB.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -49,7 +49,7 @@ pub static ACCEPTED: &[Accepted] = &[
         peer: Peer::Rs1090,
         reason: "rs1090 prints # for a character that means nothing; here such a callsign is none",
         applies: is_meaningless_callsign,
-        counts: [1, 0],
+        counts: [2, 0],
     },
     Accepted {
         peer: Peer::Rs1090,

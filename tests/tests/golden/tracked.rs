@@ -85,17 +85,20 @@ impl Tracked {
     }
 }
 
-/// What the tracker holds of a field that the message sets.
+/// What the tracker holds of a field that the message sets; `None` for fields it does not keep.
 fn holds(aircraft: &Aircraft, field: Field, message: &Message, now_ms: u64) -> Option<Said> {
     let is_gnss = matches!(message.body, Body::ExtendedSquitter { me: Me::AirbornePosition(p), .. } if p.type_code >= 20);
     Some(match field {
         Field::Altitude if is_gnss => Said::whole(aircraft.gnss_altitude(now_ms).map(|a| a.0)),
         Field::Altitude => Said::whole(aircraft.baro_altitude(now_ms).map(|a| a.0)),
-        Field::Squawk => Said::Text(format!("{:04o}", aircraft.squawk()?.0)),
-        Field::Callsign => {
-            let callsign = aircraft.callsign()?;
-            Said::Text(String::from_utf8_lossy(callsign.as_bytes()).replace(' ', ""))
-        }
+        Field::Squawk => text(aircraft.squawk().map(|code| format!("{:04o}", code.0))),
+        Field::Callsign => text(
+            aircraft
+                .callsign()
+                .map(|callsign| String::from_utf8_lossy(callsign.as_bytes()).replace(' ', "")),
+        ),
+        Field::Category => Said::whole(aircraft.category().map(|category| category.ca)),
+        Field::VerticalStatus => Said::whole(aircraft.on_ground()),
         Field::GroundSpeed => {
             let eighths = aircraft.ground_speed_eighths(now_ms);
             Said::real(eighths.map(|eighths| f64::from(eighths) / 8.0))
@@ -109,6 +112,10 @@ fn holds(aircraft: &Aircraft, field: Field, message: &Message, now_ms: u64) -> O
         Field::Nacv => Said::whole(aircraft.nacv(now_ms)),
         _ => return None,
     })
+}
+
+fn text(text: Option<String>) -> Said {
+    text.map_or(Said::Nothing, Said::Text)
 }
 
 fn has_airborne_place(message: &Message) -> bool {
