@@ -181,6 +181,7 @@ mod tests {
             bytes,
         };
         let function = |name: &str, address| Symbol {
+            size: 2,
             name: name.to_string(),
             address,
             is_function: true,
@@ -232,6 +233,7 @@ mod tests {
     fn a_demod_symbol_in_flash_is_refused() {
         let mut app = app(0);
         app.symbols.push(Symbol {
+            size: 4,
             name: "_ZN5demod5TABLEE".into(),
             address: 0x1001_7000,
             is_function: false,
