@@ -3,7 +3,9 @@
 //! Source: USB 2.0 specification chapters 5, 8 and 9; CDC PSTN subclass 1.2. It runs frames of 1 ms with at most 19 bulk transactions of
 //! 64 bytes each, the most a full-speed host can do (USB 2.0 table 5-9).
 //!
-//!     detached → (pull-up seen, 10 ms) → reset → wait for the device → control transfers → open
+//! ```text
+//! detached → (pull-up seen, 10 ms) → reset → wait for the device → control transfers → open
+//! ```
 //!
 //! Bytes to the device wait in `to_device`, bytes from it in `from_device`; when `reading` is off the host leaves IN data in the device,
 //! as a terminal that nobody reads does.
