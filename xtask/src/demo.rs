@@ -3,7 +3,6 @@
 //! The log is the two hours over the south of France that the crate `rs1090` carries (MIT); cargo fetches it as one of our test oracles.
 //! Everything after `demo` goes to `squitter twin`; a FILE among it replaces the log.
 
-use serde_json::Value;
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -93,19 +92,7 @@ fn has_file(arguments: &[&str]) -> bool {
 
 /// The message log in the folder where cargo keeps `rs1090`.
 pub fn log() -> Result<PathBuf, String> {
-    let output = Command::new(env!("CARGO"))
-        .args(["metadata", "--format-version", "1"])
-        .current_dir(workspace::root()?)
-        .output()
-        .map_err(|error| format!("cannot start cargo metadata: {error}"))?;
-    if !output.status.success() {
-        return Err(format!(
-            "cargo metadata: {}",
-            String::from_utf8_lossy(&output.stderr)
-        ));
-    }
-    let metadata: Value = serde_json::from_slice(&output.stdout)
-        .map_err(|error| format!("cargo metadata: {error}"))?;
+    let metadata = workspace::metadata()?;
     let log = metadata["packages"]
         .as_array()
         .into_iter()

@@ -15,7 +15,6 @@
 
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
-use std::process::Command;
 
 use crate::workspace;
 
@@ -89,19 +88,7 @@ fn reached(graph: &Graph, from: &str) -> BTreeSet<String> {
 
 /// Reads the graph of this workspace from cargo.
 pub fn read() -> Result<Graph, String> {
-    let output = Command::new(env!("CARGO"))
-        .args(["metadata", "--format-version", "1"])
-        .current_dir(workspace::root()?)
-        .output()
-        .map_err(|error| format!("cannot start cargo metadata: {error}"))?;
-    if !output.status.success() {
-        return Err(format!(
-            "cargo metadata: {}",
-            String::from_utf8_lossy(&output.stderr)
-        ));
-    }
-    let metadata: Value = serde_json::from_slice(&output.stdout)
-        .map_err(|error| format!("cargo metadata: {error}"))?;
+    let metadata = workspace::metadata()?;
     graph(&metadata).ok_or_else(|| "cargo metadata has another shape than expected".to_string())
 }
 

@@ -1,5 +1,6 @@
 //! Where things are, relative to the workspace that runs this.
 
+use serde_json::Value;
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -34,4 +35,18 @@ pub fn run(command: &mut Command) -> Result<(), String> {
     } else {
         Err(format!("{shown}: {status}"))
     }
+}
+
+/// What `cargo metadata` says of this workspace and everything it depends on.
+pub fn metadata() -> Result<Value, String> {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1"])
+        .current_dir(root()?)
+        .output()
+        .map_err(|error| format!("cannot start cargo metadata: {error}"))?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr);
+        return Err(format!("cargo metadata: {said}"));
+    }
+    serde_json::from_slice(&output.stdout).map_err(|error| format!("cargo metadata: {error}"))
 }
