@@ -6,6 +6,7 @@ use clap::{Arg, ArgMatches, value_parser};
 use twin::board::Board;
 
 use crate::Failure;
+use crate::profile::Functions;
 
 /// Where `cargo xtask fw` puts the image, from the checkout's root.
 const IMAGE: &str = "target/fw/squitter-adsbee_1090.uf2";
@@ -25,13 +26,52 @@ pub fn image_argument() -> Arg {
         ))
 }
 
-/// Powers the device of `--image` on and waits until it listens on both sides.
-pub fn start(matches: &ArgMatches) -> Result<Board, Failure> {
-    let image = match matches.get_one::<PathBuf>("image") {
+/// `--profile`.
+pub fn profile_argument() -> Arg {
+    Arg::new("profile")
+        .long("profile")
+        .action(clap::ArgAction::SetTrue)
+        .help("Print to standard error where each core spent its cycles, by function (names from the ELF files beside the image)")
+}
+
+/// The image of `--image`, or the checkout's own.
+fn image(matches: &ArgMatches) -> PathBuf {
+    match matches.get_one::<PathBuf>("image") {
         Some(path) => path.clone(),
         None => default_image(),
-    };
-    let mut board = Board::power_on(&image)?;
+    }
+}
+
+/// A profile under way: from here on.
+pub struct Profiling {
+    from: u64,
+}
+
+/// Starts to profile if `--profile` asks for it.
+pub fn profile(board: &mut Board, matches: &ArgMatches) -> Option<Profiling> {
+    matches.get_flag("profile").then(|| {
+        board.chip.start_profile();
+        Profiling {
+            from: board.chip.now(),
+        }
+    })
+}
+
+impl Profiling {
+    /// The tables of both cores.
+    pub fn tables(&self, board: &Board, matches: &ArgMatches) -> String {
+        let functions = Functions::beside(&image(matches));
+        let elapsed = board.chip.now() - self.from;
+        let profiles = board.chip.profile().into_iter().flatten().enumerate();
+        profiles
+            .map(|(core, profile)| functions.table(core, profile, elapsed))
+            .collect()
+    }
+}
+
+/// Powers the device of `--image` on and waits until it listens on both sides.
+pub fn start(matches: &ArgMatches) -> Result<Board, Failure> {
+    let mut board = Board::power_on(&image(matches))?;
     board.wait_for_capture()?;
     board.wait_for_console()?;
     Ok(board)

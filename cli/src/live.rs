@@ -86,6 +86,7 @@ pub fn command() -> Command {
         )
         .arg(flag("realtime").help("Run no faster than real time"))
         .arg(flag("stats").help("Print AT+STATS? at the end"))
+        .arg(device::profile_argument())
         .arg(device::image_argument())
 }
 
@@ -248,6 +249,8 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
         as_hex: binary && std::io::stdout().is_terminal(),
     };
     let realtime = ports.is_some() || matches.get_flag("realtime");
+    let profiling = device::profile(&mut board, matches);
+    let (cycles, busy) = (board.chip.now(), board.chip.busy_cycles());
     let began = Instant::now();
     let started = board.seconds();
     let elapsed = |board: &Board| board.seconds() - started;
@@ -269,23 +272,25 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
             }
         }
     }
-    let (device_time, wall) = (elapsed(&board), began.elapsed().as_secs_f64());
+    let passed = (board.chip.now() - cycles) as f64;
+    let share = |k: usize| 100.0 * (board.chip.busy_cycles()[k] - busy[k]) as f64 / passed;
+    let spent = Spent {
+        device: elapsed(&board),
+        wall: began.elapsed().as_secs_f64(),
+        load: [share(0), share(1)],
+    };
+    if let Some(profiling) = profiling {
+        eprint!("\n{}", profiling.tables(&board, matches));
+    }
     // Reports go quiet first, so that the last answer stands alone.
     device::command(&mut board, "AT+PROTOCOL=CONSOLE,NONE")?;
     let stats = device::query(&mut board, "AT+STATS?")?;
     if matches.get_flag("stats") {
         eprint!("{}", stats.replace("\r\n", "\n"));
     }
-    let played = (device_time - PRE_ROLL_PS as f64 * 1e-12).max(0.0);
+    let played = (spent.device - PRE_ROLL_PS as f64 * 1e-12).max(0.0);
     let offered = log.map(|log| offered(&log, played)).transpose()?;
-    summary(
-        &stats,
-        &console,
-        offered.as_ref(),
-        device_time,
-        wall,
-        ports.as_ref(),
-    );
+    summary(&stats, &console, offered.as_ref(), &spent, ports.as_ref());
     Ok(())
 }
 
@@ -313,12 +318,18 @@ fn exchange(
     Ok(())
 }
 
+/// Seconds of the device and of the world, and how busy the cores were, per cent.
+struct Spent {
+    device: f64,
+    wall: f64,
+    load: [f64; 2],
+}
+
 fn summary(
     stats: &str,
     console: &Console,
     offered: Option<&Offered>,
-    device_time: f64,
-    wall: f64,
+    spent: &Spent,
     ports: Option<&Ports>,
 ) {
     let count = |stage, name| device::counter(stats, stage, name).unwrap_or(0);
@@ -345,9 +356,11 @@ fn summary(
         }
         None => eprintln!("frames decoded  {decoded}"),
     }
+    let Spent { device, wall, load } = spent;
+    eprintln!("core load       {:.1} %, {:.1} %", load[0], load[1]);
     eprintln!(
-        "device time     {device_time:.1} s in {wall:.1} s, {:.2} of real time",
-        device_time / wall
+        "device time     {device:.1} s in {wall:.1} s, {:.2} of real time",
+        device / wall
     );
     for (name, port) in ports.into_iter().flat_map(|p| {
         [

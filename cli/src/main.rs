@@ -10,6 +10,7 @@ mod json;
 mod live;
 mod output;
 mod ports;
+mod profile;
 mod radio;
 mod replay;
 

@@ -39,6 +39,7 @@ pub fn command() -> Command {
         )
         .arg(output::argument())
         .arg(Arg::new("stats").long("stats").action(clap::ArgAction::SetTrue).help("Print the counters of every stage to standard error"))
+        .arg(device::profile_argument())
         .arg(device::image_argument())
 }
 
@@ -112,12 +113,18 @@ fn by_twin(
     board.console_read();
 
     let playback = board.play(source)?;
+    let profiling = device::profile(&mut board, matches);
     let start = output::start_count(playback.start_tick, PRE_ROLL_PS);
     let mut reader = beast::Reader::default();
     let mut left = TAIL_MS;
+    let mut tables = None;
     while left > 0 {
         board.run_ms(1)?;
         if board.playback_finished() {
+            // The recording alone, not the silence after it.
+            if let (Some(profiling), None) = (&profiling, &tables) {
+                tables = Some(profiling.tables(&board, matches));
+            }
             left -= 1;
         }
         let (comms, said) = (board.comms_read(), board.console_read());
@@ -134,6 +141,9 @@ fn by_twin(
                 }
             }
         }
+    }
+    if let Some(tables) = tables {
+        eprint!("{tables}");
     }
     if form == Form::Csbee {
         device::command(&mut board, "AT+PROTOCOL=CONSOLE,NONE")?;

@@ -193,3 +193,32 @@ fn a_missing_image_is_told_with_what_to_do() {
         "{said}"
     );
 }
+
+#[test]
+fn a_profile_names_the_functions_of_both_cores() {
+    let output = squitter(&[
+        "replay",
+        &modes1(),
+        "--format",
+        "cu8",
+        "--rate",
+        "2000000",
+        "--profile",
+    ]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("core 0: busy "), "{said}");
+    let core1 = said
+        .split("core 1: busy ")
+        .nth(1)
+        .expect("a table of core 1");
+    assert!(core1.contains("demod::"), "{core1}");
+    assert!(!core1.contains("(no name)"), "{core1}");
+    let busy: f64 = core1
+        .split(' ')
+        .next()
+        .expect("a share")
+        .parse()
+        .expect("a number");
+    // The densest recording at hand leaves core 1 a reserve: nothing may be lost at the ring.
+    assert!(busy < 80.0, "core 1 is {busy} % busy");
+}

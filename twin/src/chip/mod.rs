@@ -13,6 +13,7 @@ mod dma;
 pub mod flash;
 pub mod pins;
 mod pio;
+mod profile;
 mod pwm;
 mod rom;
 mod sio;
@@ -23,9 +24,9 @@ pub mod usb_host;
 
 use bus::{Bus, Fault, ResetCause};
 use flash::Flash;
+pub use profile::Profile;
 use rp2040_emu::CortexM0Plus;
 use rp2040_emu::core::CoreBus;
-use std::collections::BTreeMap;
 
 /// Most cycles a core runs ahead of the peripherals and of the other core.
 const SLICE: u64 = 64;
@@ -75,7 +76,7 @@ pub struct Chip {
     /// Resets since power-on, the power-on first.
     pub resets: Vec<ResetEvent>,
     /// Cycles spent at each instruction address, a table a core, while profiling.
-    profile: Option<Box<[BTreeMap<u32, u64>; 2]>>,
+    profile: Option<Box<[Profile; 2]>>,
 }
 
 impl Chip {
@@ -127,13 +128,17 @@ impl Chip {
         self.bus.wake_at[core] = None;
     }
 
-    /// Starts to count cycles by instruction address, or takes what was counted for one core so far.
-    pub fn profile(&mut self, core: usize) -> BTreeMap<u32, u64> {
-        let tables = self.profile.get_or_insert_default();
-        std::mem::take(&mut tables[core])
+    /// Starts to count cycles by instruction address. Costs about half of the speed.
+    pub fn start_profile(&mut self) {
+        self.profile = Some(Box::new([Profile::new(), Profile::new()]));
     }
 
-    /// Cycles each core has accounted for; differs from [`Chip::now`] by at most a slice.
+    /// What was counted for each core since [`Chip::start_profile`].
+    pub fn profile(&self) -> Option<&[Profile; 2]> {
+        self.profile.as_deref()
+    }
+
+    /// Where a core is.
     pub fn program_counter(&self, core: usize) -> u32 {
         self.cores[core].cpu.regs.pc()
     }
@@ -290,7 +295,7 @@ impl Chip {
         self.step(k, end.min(before + 1));
         let cycles = self.cores[k].time - before;
         if let Some(profile) = &mut self.profile {
-            *profile[k].entry(self.bus.active_pc).or_default() += cycles;
+            profile[k].count(self.bus.active_pc, cycles);
         }
     }
 

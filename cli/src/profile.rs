@@ -1,0 +1,91 @@
+//! `--profile`: the cycles of each core by function, with the names of the linked images.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use object::{Object, ObjectSymbol, SymbolKind};
+use twin::chip::Profile;
+
+/// Functions listed a core.
+const LISTED: usize = 20;
+
+/// Functions by start address: name and size.
+pub struct Functions(BTreeMap<u32, (String, u32)>);
+
+impl Functions {
+    /// The functions of the ELF files beside the image (`bootloader.elf`, `app.elf`); those that are missing give no names.
+    pub fn beside(image: &Path) -> Self {
+        let mut functions = BTreeMap::new();
+        for name in ["bootloader.elf", "app.elf"] {
+            let path = image.with_file_name(name);
+            let Ok(bytes) = std::fs::read(&path) else {
+                eprintln!(
+                    "squitter: no names from {}, it cannot be read",
+                    path.display()
+                );
+                continue;
+            };
+            let Ok(elf) = object::File::parse(bytes.as_slice()) else {
+                eprintln!(
+                    "squitter: no names from {}, it is no ELF file",
+                    path.display()
+                );
+                continue;
+            };
+            for symbol in elf.symbols().filter(|s| s.kind() == SymbolKind::Text) {
+                let name = symbol.name().unwrap_or_default();
+                let name = format!("{:#}", rustc_demangle::demangle(name));
+                functions.insert(symbol.address() as u32 & !1, (name, symbol.size() as u32));
+            }
+        }
+        Self(functions)
+    }
+
+    fn at(&self, address: u32) -> &str {
+        match self.0.range(..=address).next_back() {
+            Some((start, (name, size))) if address - start < (*size).max(2) => name,
+            _ => "(no name)",
+        }
+    }
+
+    /// The table of one core as text, `elapsed` being all cycles that passed.
+    pub fn table(&self, core: usize, profile: &Profile, elapsed: u64) -> String {
+        let mut by_function: BTreeMap<&str, u64> = BTreeMap::new();
+        for (address, cycles) in profile.addresses() {
+            *by_function.entry(self.at(address)).or_default() += cycles;
+        }
+        let mut rows: Vec<(&str, u64)> = by_function.into_iter().collect();
+        rows.sort_by_key(|(_, cycles)| std::cmp::Reverse(*cycles));
+        let share = |cycles: u64| 100.0 * cycles as f64 / elapsed.max(1) as f64;
+        let mut text = format!(
+            "core {core}: busy {:.1} % of {elapsed} cycles\n",
+            share(profile.total())
+        );
+        for (name, cycles) in rows.into_iter().take(LISTED) {
+            text.push_str(&format!("{cycles:>12} {:>5.1} % {name}\n", share(cycles)));
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_belongs_to_the_function_that_spans_it() {
+        let functions = Functions(BTreeMap::from([
+            (0x100, ("a".to_string(), 8)),
+            (0x110, ("b".to_string(), 4)),
+        ]));
+        for (address, name) in [
+            (0x100, "a"),
+            (0x106, "a"),
+            (0x108, "(no name)"),
+            (0x112, "b"),
+            (0x0, "(no name)"),
+        ] {
+            assert_eq!(functions.at(address), name, "{address:#x}");
+        }
+    }
+}
