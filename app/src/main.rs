@@ -63,7 +63,7 @@ static SHARED: SharedCounters = SharedCounters {
 fn main() -> ! {
     match start() {
         Some(never) => match never {},
-        // Only a crystal that does not start, or a mistake of placement, leads here: there is no port to say it on.
+        // Only a mistake of placement or of clocks leads here: there is no port to say it on.
         None => watchdog::reset(HandOver::Restart(Cause::Other).words()),
     }
 }

@@ -49,13 +49,14 @@ fn main() -> ! {
         }
         Start::Verify(cause) => cause,
     };
-    // At 120 MHz the verification is quick; a board whose crystal is dead cannot say so on any port.
+    // At 120 MHz the verification is quick; a board whose crystal is dead hangs here and cannot say so on any port.
     let mut parts = Parts::take();
     if let Some(parts) = &mut parts {
         parts.watchdog.start(WATCHDOG_US);
     }
     match verify() {
-        Ok(()) => watchdog::reset(HandOver::Run(cause).words()),
+        // The count goes on: an app that hangs before it starts its own comes back here.
+        Ok(()) => watchdog::reset_counting(HandOver::Run(cause).words()),
         Err(refusal) => stay(parts, refusal),
     }
 }

@@ -4,11 +4,11 @@
 //!   core 0: launch(context, entry) ── FIFO 0,0,1,VTOR,SP,entry ──▶ ROM on core 1 ──▶ start: interrupts masked ──▶ entry(context)
 //!   core 1: wake_core0() ── one word in the FIFO ──▶ SIO_IRQ_PROC0 pending on core 0 ──▶ WFI ends; drain_wakes() lowers the line
 //! ```
-//! The stack fills SCRATCH_X, a bank that core 0 and DMA do not use. Nothing guards its end: core 1's call depth is fixed, and the
-//! twin measured 572 of the 4096 bytes in use on a dense recording.
+//! The stack fills SCRATCH_X, a bank that core 0 and DMA do not use. Nothing guards its end, and what lies below it is the top of core
+//! 0's stack: core 1's call depth is fixed, and the twin measured 572 of the 4096 bytes in use on a dense recording.
 
 use core::cell::UnsafeCell;
-use core::sync::atomic::{AtomicUsize, Ordering};
+use core::sync::atomic::{AtomicPtr, Ordering, fence};
 use rp2040_hal::{pac, sio::SioFifo};
 
 /// Bytes of core 1's stack: the whole bank.
@@ -22,8 +22,8 @@ unsafe impl Sync for Stack {}
 #[unsafe(link_section = ".core1_stack")]
 static STACK: Stack = Stack(UnsafeCell::new([0; STACK_BYTES]));
 
-static CONTEXT: AtomicUsize = AtomicUsize::new(0);
-static ENTRY: AtomicUsize = AtomicUsize::new(0);
+static CONTEXT: AtomicPtr<()> = AtomicPtr::new(core::ptr::null_mut());
+static ENTRY: AtomicPtr<()> = AtomicPtr::new(core::ptr::null_mut());
 
 /// The right to start core 1; exists once.
 pub struct Core1 {
@@ -43,8 +43,10 @@ impl Core1 {
         context: &'static mut T,
         entry: fn(&'static mut T) -> !,
     ) -> Wakes {
-        CONTEXT.store(core::ptr::from_mut(context) as usize, Ordering::Release);
-        ENTRY.store(entry as usize, Ordering::Release);
+        CONTEXT.store(core::ptr::from_mut(context).cast(), Ordering::Relaxed);
+        ENTRY.store(entry as *mut (), Ordering::Relaxed);
+        // Both, and what the context points to, are in memory before core 1 is told anything.
+        fence(Ordering::SeqCst);
 
         // Into its ROM loop, whatever it did before.
         self.psm.frce_off().modify(|_, w| w.proc1().set_bit());
@@ -87,8 +89,9 @@ extern "C" fn start<T: Send + 'static>() -> ! {
     // SAFETY: `launch::<T>` stored a `&'static mut T` that it consumed and a `fn(&'static mut T) -> !`, and named `start::<T>`
     // of the same T; it runs once because `Core1` exists once.
     unsafe {
-        let context = &mut *(CONTEXT.load(Ordering::Acquire) as *mut T);
-        let entry: fn(&'static mut T) -> ! = core::mem::transmute(ENTRY.load(Ordering::Acquire));
+        let context = &mut *CONTEXT.load(Ordering::Acquire).cast::<T>();
+        let entry =
+            core::mem::transmute::<*mut (), fn(&'static mut T) -> !>(ENTRY.load(Ordering::Acquire));
         entry(context)
     }
 }

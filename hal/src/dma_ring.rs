@@ -12,7 +12,7 @@
 //! The write address is never rewritten, so it stays the one truth of how far the ring is. Between two blocks the PIO's FIFO
 //! holds the samples: the chain takes tens of cycles, the FIFO lasts 3 840.
 
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::sync::atomic::{AtomicU32, Ordering, fence};
 use rp2040_hal::pac;
 
 /// Words a block: one interrupt every 128 us at 4 us a word.
@@ -90,18 +90,14 @@ impl<const N: usize> DmaRing<N> {
         Ok(Self { dma, base })
     }
 
-    /// Index of the word that will be written next.
+    /// Index of the word that will be written next. The address moves when a transfer is issued: the newest word may land a few
+    /// cycles after this was read, while the sampler needs 480 for the next one.
     #[inline(always)]
     pub fn position(&self) -> u32 {
-        (self
-            .dma
-            .ch(DATA)
-            .ch_write_addr()
-            .read()
-            .bits()
-            .wrapping_sub(self.base)
-            / 4)
-            & (N as u32 - 1)
+        let address = self.dma.ch(DATA).ch_write_addr().read().bits();
+        // No word of the ring is read before the address that says it is there.
+        fence(Ordering::Acquire);
+        (address.wrapping_sub(self.base) / 4) & (N as u32 - 1)
     }
 
     /// Enables the block interrupt as a wake-up of the calling core, which keeps its interrupts masked.
@@ -124,8 +120,6 @@ impl<const N: usize> DmaRing<N> {
         // SAFETY: write one to clear, the data channel's bit alone.
         self.dma.ints1().write(|w| unsafe { w.bits(1 << DATA) });
         pac::NVIC::unpend(pac::Interrupt::DMA_IRQ_1);
-        // What the DMA wrote before the interrupt is read only after this point.
-        core::sync::atomic::fence(Ordering::Acquire);
     }
 }
 

@@ -79,7 +79,8 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// Brings chip and board up. `None` the second time, or when the crystal or a PLL does not come up as asked.
+    /// Brings chip and board up. `None` the second time, or for clocks that the chip cannot make. A crystal that does not start or a
+    /// PLL that does not lock is waited for without end: the watchdog decides, if it runs already.
     pub fn take() -> Option<Self> {
         let p = pac::Peripherals::take()?;
         let mut resets = p.RESETS;

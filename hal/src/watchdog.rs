@@ -1,7 +1,8 @@
 //! The watchdog: feeding, a forced reset, the two hand-over words, and what the chip says about its last reset.
 //!
 //! A reset by the watchdog goes through the whole power-on state machine but the oscillators: both cores, all peripherals, SRAM
-//! kept. USB disappears from the bus for real. Scratch words survive; 2 and 3 are ours (`boot-contract`).
+//! kept. USB disappears from the bus for real. The watchdog itself is reset by power-on and the RUN pin only (RP2040 datasheet,
+//! 4.7.1): its scratch words survive (2 and 3 are ours, `boot-contract`), and a running count runs on, also into the ROM's USB drive.
 
 use rp2040_hal::fugit::MicrosDurationU32;
 use rp2040_hal::pac;
@@ -75,8 +76,15 @@ pub fn set_hand_over_words([word, complement]: [u32; 2]) {
         .write(|w| unsafe { w.bits(complement) });
 }
 
-/// Resets the chip now, leaving `words` in scratch 2 and 3.
+/// Stops the count and resets the chip now, leaving `words` in scratch 2 and 3.
 pub fn reset(words: [u32; 2]) -> ! {
+    // A count that ran on would cut short what the user may have asked for with BOOTSEL: the ROM's USB drive.
+    registers().ctrl().modify(|_, w| w.enable().clear_bit());
+    reset_counting(words)
+}
+
+/// As [`reset`], but a running count goes on: what starts now has what is left of it to start its own.
+pub fn reset_counting(words: [u32; 2]) -> ! {
     cortex_m::interrupt::disable();
     set_hand_over_words(words);
     // SAFETY: selects everything but the oscillators for the watchdog's reset; nothing else writes WDSEL, and we do not return.

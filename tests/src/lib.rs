@@ -1,5 +1,7 @@
 //! What end-to-end tests and benchmarks share: where the images and the recordings are, and how a bench reports.
 
+pub mod cpu_peer;
+
 use std::path::PathBuf;
 
 /// The checkout's root.

@@ -1,21 +1,34 @@
 //! `cargo xtask bench <name>`: a benchmark of the `tests` crate. Its last line is `result: key=value …`; its rows go to
-//! `target/bench/<name>.csv`. With `--save` the table it prints is written to `docs/bench/<name>.txt`, which is committed.
+//! `target/bench/<name>.csv`. With `--save` the table it prints is written to `docs/bench/<name>.txt`, which is committed. `twin-peers` is
+//! not one of that crate's: it compares the twin with others (`peers`).
 
 use std::process::Command;
 
-use crate::{fw, workspace};
+use crate::{fw, peers, workspace};
 
 /// The benchmarks and what they measure.
-const BENCHES: [(&str, &str); 1] = [(
-    "twin",
-    "emulated MHz and share of real time: one core, two cores, two cores with capture and DMA, the image on real traffic",
-)];
+const BENCHES: [(&str, &str); 3] = [
+    (
+        "twin",
+        "emulated MHz and share of real time: one core, two cores, two cores with capture and DMA, the image on real traffic",
+    ),
+    (
+        "cpu-peers",
+        "the twin's CPU core against QEMU's Cortex-M0 on random programs; needs qemu-system-arm",
+    ),
+    (
+        PEERS,
+        "random PIO programs in the twin and in an independent emulator, cycle by cycle [--programs N] [--seed S]",
+    ),
+];
+/// The one that `peers` runs.
+const PEERS: &str = "twin-peers";
 
 /// The list, for the usage text.
 pub fn list() -> String {
     BENCHES
         .iter()
-        .map(|(name, what)| format!("  {name:<8} {what}\n"))
+        .map(|(name, what)| format!("  {name:<11} {what}\n"))
         .collect()
 }
 
@@ -27,6 +40,9 @@ pub fn run(arguments: &[&str]) -> Result<(), String> {
             list()
         ));
     };
+    if *name == PEERS {
+        return peers::bench(rest);
+    }
     if !BENCHES.iter().any(|(n, _)| n == name) {
         return Err(format!(
             "no benchmark is called {name}; there are:\n{}",

@@ -19,6 +19,7 @@ mod elf;
 mod flash_image;
 mod fw;
 mod hot;
+mod peers;
 mod size;
 mod test;
 mod thumb;

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::{check, fw, size, workspace};
+use crate::{check, fw, peers, size, workspace};
 
 /// Runs all of it.
 pub fn run() -> Result<(), String> {
@@ -10,6 +10,16 @@ pub fn run() -> Result<(), String> {
     if !data.exists() {
         return Err(
             "the recordings are missing: ../shared/data beside the project; the tests that read them would fail".into(),
+        );
+    }
+    if Command::new("qemu-system-arm")
+        .arg("--version")
+        .output()
+        .is_err()
+    {
+        return Err(
+            "qemu-system-arm is missing, against which the twin's CPU core is checked; install it: apt-get install qemu-system-arm"
+                .into(),
         );
     }
     check::run()?;
@@ -23,6 +33,8 @@ pub fn run() -> Result<(), String> {
         .current_dir(workspace::root()?)
         .args(["test", "--no-fail-fast"]);
     workspace::run(&mut tests)?;
+    println!("test: the twin's PIO against an independent emulator");
+    peers::test()?;
     println!("test: all good");
     Ok(())
 }

@@ -1,11 +1,11 @@
-//! The hand-over words: watchdog scratch 2 and 3, which survive every reset but power-on.
+//! The hand-over words: watchdog scratch 2 and 3, which survive every reset but power-on and the RUN pin.
 //!
 //! ```text
 //! scratch 2   0x5351_kkcc   "SQ", kind, cause
 //! scratch 3   its complement
 //! ```
 //! Scratch 0/1 and 4-7 belong to others (the ROM keeps its own vector in 4-7). Words whose complement does not match are
-//! nobody's: power-on leaves them undefined.
+//! nobody's: power-on and the RUN pin clear them.
 //!
 //! | kind | written by | read by | means |
 //! |---|---|---|---|

@@ -303,3 +303,14 @@ fn time_is_kept_across_a_change_of_the_system_clock() {
     assert_eq!(chip.bus.time_ps() - before, 2_000_000_000);
     assert_eq!(chip.bus.read32(TIMER + 0x28) - ticks, 1_000);
 }
+
+#[test]
+fn a_fault_without_a_handler_stops_the_chip_instead_of_sleeping_for_ever() {
+    // udf #0
+    let mut chip = chip(&[0xde00, 0xe7fe]);
+    let halt = run(&mut chip, 1_000).expect_err("it stops");
+    assert!(
+        matches!(halt.fault, Fault::HardFault { core: 0, .. }),
+        "{halt}"
+    );
+}

@@ -12,7 +12,7 @@ mod clocks;
 mod dma;
 pub mod flash;
 pub mod pins;
-mod pio;
+pub mod pio;
 mod profile;
 mod pwm;
 mod rom;
@@ -34,6 +34,8 @@ const SLICE: u64 = 64;
 const IDLE_SLICE: u64 = 1 << 20;
 /// Cycles of exception entry (Cortex-M0+ TRM: 15 with zero wait states).
 const EXCEPTION_ENTRY: u64 = 15;
+/// What the CPU core shows as its address while it enters an exception.
+const STACKING: u32 = 0xffff_fffe;
 /// boot2: the first 256 bytes of flash run from the top of SRAM (datasheet 2.8.1.3.1).
 const BOOT2: usize = 256;
 const BOOT2_AT: u32 = 0x2004_1f00;
@@ -254,6 +256,13 @@ impl Chip {
                 for core in &mut self.cores {
                     core.cpu.invalidate_decode_cache_entries(&stale);
                 }
+            }
+            if self.cores[k].cpu.is_halted() && self.bus.active_pc == STACKING {
+                // Locked up: the HardFault vector leads nowhere. Only WFI may halt a core.
+                let pc = self.faulting_pc(k);
+                let fault = Fault::HardFault { core: k, pc };
+                self.bus.fault.get_or_insert(fault);
+                break;
             }
             if self.cores[k].cpu.is_halted() || self.bus.wfe[k] {
                 self.bus.asleep[k] = true;

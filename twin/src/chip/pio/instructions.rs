@@ -29,6 +29,8 @@ impl Pio {
         let field = (i >> 8) & 0x1f;
         let delay_bits = 5 - side_bits;
         let delay = field & ((1 << delay_bits) - 1);
+        let flow = self.perform(n, i, now, pins);
+        // After OUT, SET and MOV: where both drive a pin, side-set wins (datasheet 3.5.6.1).
         if side_bits > 0 {
             let side = field >> delay_bits;
             let value_bits = side_bits - side_opt;
@@ -39,7 +41,6 @@ impl Pio {
                 self.write_pins(base, value_bits, side, to_dirs);
             }
         }
-        let flow = self.perform(n, i, now, pins);
         // Autopull refills the OSR in the background of every other instruction (datasheet 3.5.4.2).
         if i >> 13 != 3 {
             self.background_pull(n);
@@ -64,10 +65,11 @@ impl Pio {
                 };
             }
         }
-        sm.delay = delay;
+        // The delay of an instruction that sends another to EXEC is ignored (datasheet 3.4.5.2, 3.4.8.2).
+        sm.delay = if sm.exec.is_some() { 0 } else { delay };
     }
 
-    fn background_pull(&mut self, n: usize) {
+    pub(super) fn background_pull(&mut self, n: usize) {
         let sm = &mut self.sm[n];
         if sm.autopull()
             && sm.osr_count >= sm.pull_threshold()

@@ -20,9 +20,11 @@
 //! flag or an output pin changed).
 
 mod instructions;
+mod observed;
 mod state_machine;
 
 use super::pins::Pins;
+pub use observed::Observed;
 use state_machine::StateMachine;
 
 /// One PIO block.
@@ -164,6 +166,8 @@ impl Pio {
     fn tick(&mut self, n: usize, now: u64, pins: &mut Pins) {
         if self.sm[n].delay > 0 {
             self.sm[n].delay -= 1;
+            // No OUT runs in this cycle, so autopull goes on (datasheet 3.5.4.2).
+            self.background_pull(n);
             return;
         }
         let from_exec = self.sm[n].exec;
@@ -229,8 +233,9 @@ impl Pio {
             }
             0x030 => self.irq,
             0x038 => self.sync_bypass,
-            0x03c => self.pad_out,
-            0x040 => self.pad_oe,
+            // The chip has 30 pads; the two highest bits read as zero.
+            0x03c => self.pad_out & 0x3fff_ffff,
+            0x040 => self.pad_oe & 0x3fff_ffff,
             // 32 instructions, 4 state machines, FIFOs 4 deep.
             0x044 => (32 << 16) | (4 << 8) | 4,
             0x0c8..=0x124 => {
@@ -276,6 +281,10 @@ impl Pio {
             0x034 => self.irq |= value & 0xff,
             0x038 => self.sync_bypass = value,
             0x048..=0x0c4 => self.program[((offset - 0x48) / 4) as usize] = value as u16,
+            // OUT_STICKY and INLINE_OUT_EN of EXECCTRL are not modelled.
+            0x0c8..=0x124 if (offset - 0xc8) % 0x18 == 0x04 && value & (3 << 17) != 0 => {
+                return false;
+            }
             0x0c8..=0x124 => self.write_sm(offset, value, now, pins),
             0x12c => self.inte[0] = value & 0xfff,
             0x130 => self.intf[0] = value & 0xfff,

@@ -156,3 +156,93 @@ fn side_set_with_its_enable_bit_drives_only_where_asked() {
     }
     assert_eq!(trace, [1, 1, 0, 1, 1, 0]);
 }
+
+/// State machine 0 with a program and its settings, enabled at cycle 0.
+fn running(program: &[u32], execctrl: u32, shiftctrl: u32, pinctrl: u32) -> (Pio, Pins) {
+    let (mut pio, mut pins) = (Pio::new(), Pins::new());
+    for (n, &word) in program.iter().enumerate() {
+        pio.write(0x048 + 4 * n as u32, word, 0, &mut pins);
+    }
+    pio.write(0x0cc, execctrl, 0, &mut pins);
+    pio.write(0x0d0, shiftctrl, 0, &mut pins);
+    pio.write(0x0dc, pinctrl, 0, &mut pins);
+    pio.write(0x000, 1, 0, &mut pins);
+    (pio, pins)
+}
+
+/// Runs all ticks up to `cycle`.
+fn run_to(pio: &mut Pio, pins: &mut Pins, cycle: u64) {
+    while pio.next_tick() <= cycle {
+        pio.run(cycle, pins);
+    }
+}
+
+#[test]
+fn side_set_wins_over_set_out_and_mov_on_the_same_pin() {
+    // One side-set pin, 3; SET pins 2 to 4; OUT pins 2 to 4.
+    let pinctrl = 1 << 29 | 3 << 26 | 3 << 20 | 3 << 10 | 2 << 5 | 2;
+    // `set pins, 0 side 1`, `mov pins, null side 1`, `out pins, 3 side 1`, `set pins, 7 side 0`
+    for (instruction, levels) in [
+        (0xf000, 0b01000),
+        (0xb003, 0b01000),
+        (0x7003, 0b01000),
+        (0xe007, 0b10100),
+    ] {
+        let (mut pio, mut pins) = running(&[instruction], 0, 0, pinctrl);
+        run_to(&mut pio, &mut pins, 1);
+        assert_eq!(pio.read(0x03c), Some(levels), "{instruction:#06x}");
+    }
+}
+
+#[test]
+fn autopull_refills_during_delay_cycles() {
+    // `out x, 32 [3]` over and over: a word that arrives during the delay is in the OSR when OUT comes again.
+    let (mut pio, mut pins) = running(&[0x6320], 0, 1 << 17, 0);
+    pio.write(0x010, 11, 0, &mut pins);
+    // Tick 1 finds the OSR empty, refills it and stalls; tick 2 takes the word; ticks 3 to 5 are the delay.
+    run_to(&mut pio, &mut pins, 3);
+    assert_eq!((pio.observe(0).x, pio.observe(0).osr_count), (11, 32));
+    pio.write(0x010, 22, 3, &mut pins);
+    run_to(&mut pio, &mut pins, 4);
+    assert_eq!(
+        (pio.observe(0).osr, pio.observe(0).osr_count),
+        (22, 0),
+        "refilled while waiting"
+    );
+    run_to(&mut pio, &mut pins, 6);
+    assert_eq!(pio.observe(0).x, 22, "no stall");
+}
+
+#[test]
+fn the_delay_of_an_instruction_that_feeds_exec_is_ignored() {
+    // `mov exec, x [7]` with X = 0xe041 (`set y, 1`), then `jmp 1`.
+    let (mut pio, mut pins) = running(&[0xa781, 0x0001], 1 << 12, 0, 0);
+    pio.write(0x010, 0xe041, 0, &mut pins);
+    for forced in [0x80a0, 0xa027, 0x0000] {
+        pio.write(0x0d8, forced, 0, &mut pins);
+    }
+    run_to(&mut pio, &mut pins, 2);
+    assert_eq!(pio.observe(0).y, 1);
+}
+
+#[test]
+fn the_pad_registers_show_thirty_pads() {
+    // `mov pins, !null`, `mov osr, !null`, `out pindirs, 32`
+    let (mut pio, mut pins) = running(&[0xa00b, 0xa0eb, 0x6080], 0x1f << 12, 0, 32 << 20);
+    run_to(&mut pio, &mut pins, 3);
+    assert_eq!(pio.read(0x03c), Some(0x3fff_ffff));
+    assert_eq!(pio.read(0x040), Some(0x3fff_ffff));
+}
+
+#[test]
+fn sticky_and_inline_enabled_outputs_are_refused_rather_than_ignored() {
+    let (mut pio, mut pins) = (Pio::new(), Pins::new());
+    assert!(pio.write(0x0cc, 0x1f << 12, 0, &mut pins));
+    assert!(!pio.write(0x0cc, 1 << 17, 0, &mut pins));
+    assert!(!pio.write(0x0cc, 1 << 18, 0, &mut pins));
+    assert_eq!(
+        pio.read(0x0cc),
+        Some(0x1f << 12),
+        "the register keeps its value"
+    );
+}

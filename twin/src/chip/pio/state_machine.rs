@@ -31,6 +31,12 @@ impl Fifo {
     pub(super) fn clear(&mut self) {
         self.len = 0;
     }
+
+    /// The words, the oldest first.
+    pub(super) fn to_vec(&self) -> Vec<u32> {
+        let slot = |n| (self.head + n) % self.words.len();
+        (0..self.len).map(|n| self.words[slot(n)]).collect()
+    }
 }
 
 /// One state machine.
