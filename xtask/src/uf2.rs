@@ -15,6 +15,8 @@ const CONVERTER: &str = "elf2uf2-rs";
 const CONVERTER_VERSION: &str = "2.2.0";
 const MAGIC_START: [u32; 2] = [0x0A32_4655, 0x9E5D_5157];
 const MAGIC_END: u32 = 0x0AB1_6F30;
+/// Flag "the family is present"; without it a loader takes the block for any chip.
+const FAMILY_PRESENT: u32 = 0x2000;
 /// UF2 family of the RP2040.
 const FAMILY_RP2040: u32 = 0xE48B_FF56;
 const BLOCK: usize = 512;
@@ -86,7 +88,7 @@ fn pages(file: &[u8]) -> Result<BTreeMap<u32, Vec<u8>>, String> {
                 word(24)
             ));
         }
-        if word(28) != FAMILY_RP2040 {
+        if word(8) & FAMILY_PRESENT == 0 || word(28) != FAMILY_RP2040 {
             return Err(format!("block {index}: family {:#010x}", word(28)));
         }
         if pages
@@ -129,7 +131,7 @@ mod tests {
         for word in [
             MAGIC_START[0],
             MAGIC_START[1],
-            0x2000,
+            FAMILY_PRESENT,
             address,
             256,
             index,
@@ -178,5 +180,8 @@ mod tests {
             bad[at] ^= 1;
             assert!(pages(&bad).is_err(), "byte {at}");
         }
+        let mut without_family = file;
+        without_family[9] ^= 0x20;
+        assert!(pages(&without_family).is_err());
     }
 }
