@@ -25,6 +25,14 @@ pub enum Kind {
     AirbornePosition,
     /// ME of TC 19.
     Velocity,
+    /// ME of TC 28, subtype 1.
+    Emergency,
+    /// ME of TC 28, subtype 2.
+    AcasRa,
+    /// ME of TC 29.
+    TargetState,
+    /// ME of TC 31.
+    OperationalStatus,
     /// An extended squitter whose ME type is not decoded.
     OtherSquitter,
     /// A format that is not decoded.
@@ -35,7 +43,7 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind, in the order of declaration.
-    pub const ALL: [Kind; 11] = [
+    pub const ALL: [Kind; 15] = [
         Kind::AirAir,
         Kind::AltitudeReply,
         Kind::IdentityReply,
@@ -44,6 +52,10 @@ impl Kind {
         Kind::SurfacePosition,
         Kind::AirbornePosition,
         Kind::Velocity,
+        Kind::Emergency,
+        Kind::AcasRa,
+        Kind::TargetState,
+        Kind::OperationalStatus,
         Kind::OtherSquitter,
         Kind::OtherFormat,
         Kind::Broken,
@@ -60,6 +72,10 @@ impl Kind {
             Kind::SurfacePosition => "surface_position",
             Kind::AirbornePosition => "airborne_position",
             Kind::Velocity => "velocity",
+            Kind::Emergency => "emergency",
+            Kind::AcasRa => "acas_ra",
+            Kind::TargetState => "target_state",
+            Kind::OperationalStatus => "operational_status",
             Kind::OtherSquitter => "other_squitter",
             Kind::OtherFormat => "other_format",
             Kind::Broken => "broken",
@@ -80,6 +96,10 @@ impl Message {
                 Me::SurfacePosition(_) => Kind::SurfacePosition,
                 Me::AirbornePosition(_) => Kind::AirbornePosition,
                 Me::Velocity(_) => Kind::Velocity,
+                Me::Emergency(_) => Kind::Emergency,
+                Me::AcasRa(_) => Kind::AcasRa,
+                Me::TargetState(_) => Kind::TargetState,
+                Me::OperationalStatus(_) => Kind::OperationalStatus,
                 Me::NotDecoded { .. } => Kind::OtherSquitter,
             },
             Body::NotDecoded if matches!(self.parity, Parity::Broken) => Kind::Broken,
@@ -156,8 +176,12 @@ mod tests {
             ("8D485020994409940838175B284F", Kind::Velocity),
             ("8D4CA7E858B9838206BA422BBD7A", Kind::Broken),
             ("9800000000000000000000000000", Kind::OtherFormat),
-            // A status message, TC 31, and a DF18 whose CF 4 is management.
-            (&with_parity([0x8D, 0xF8]), Kind::OtherSquitter),
+            ("8DA2C1B6E112B600000000760759", Kind::Emergency),
+            (&with_parity([0x8D, 0xE2]), Kind::AcasRa),
+            ("8DA05629EA21485CBF3F8CADAEEB", Kind::TargetState),
+            ("8D486257F8230002004BB89498E3", Kind::OperationalStatus),
+            // A reserved type code, and a DF18 whose CF 4 is management.
+            (&with_parity([0x8D, 0xF0]), Kind::OtherSquitter),
             (&with_parity([0x94, 0x58]), Kind::OtherSquitter),
         ] {
             assert_eq!(Message::decode(&frame(hex)).kind(), kind, "{hex}");

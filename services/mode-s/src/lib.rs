@@ -18,7 +18,7 @@
 //! | 4, 20 | altitude reply, Comm-B | flight status, altitude; MB is not |
 //! | 5, 21 | identity reply, Comm-B | flight status, Mode A code; MB is not |
 //! | 11 | all-call reply | capability |
-//! | 17, 18 | extended squitter | ME type codes 1-22 but the reserved ones; others are named as not decoded |
+//! | 17, 18 | extended squitter | ME type codes 1-22, 28, 29, 31 but the reserved subtypes; others are named as not decoded |
 //! | 19, 24 and the rest | military, Comm-D, unassigned | no: counted as not decoded |
 #![no_std]
 #![forbid(unsafe_code)]
@@ -36,6 +36,7 @@ pub mod identity;
 pub mod kind;
 pub mod me;
 pub mod message;
+pub mod nic;
 pub mod nl;
 pub mod parity;
 pub mod surveillance;
@@ -48,10 +49,15 @@ pub use frame::{Df, Frame, FrameError};
 pub use identity::ModeACode;
 pub use kind::{Kind, KindCounters};
 pub use me::Me;
+pub use me::acas_ra::AcasRa;
 pub use me::airborne_position::{AirbornePosition, AltitudeSource, PositionAltitude};
+pub use me::emergency::{EmergencyState, EmergencyStatus};
 pub use me::identification::{Callsign, Category, Identification};
+pub use me::operational_status::{AntennaOffset, LateralOffset, OperationalStatus, SizeCode};
 pub use me::surface_position::SurfacePosition;
+pub use me::target_state::{AutopilotModes, SelectedAltitude, SelectionSource, TargetState};
 pub use me::velocity::{Airspeed, HorizontalVelocity, Velocity, VerticalRate};
 pub use message::{Body, Message};
+pub use nic::NicSupplements;
 pub use parity::Parity;
 pub use surveillance::{Capability, FlightStatus};

@@ -209,7 +209,6 @@ fn surface_movement_and_track() {
     // 18 kt, 140.625°.
     assert_eq!(position.ground_speed_eighths, Some(18 * 8));
     assert_eq!(position.track, Some(CentiDegrees(14_063)));
-    assert_eq!(position.nic, 8);
 }
 
 #[test]

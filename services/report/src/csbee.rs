@@ -8,8 +8,8 @@
 //! LAT and LON degrees with five decimals, the rest decimal integers in the units of the document. An unknown field is empty.
 //! CRC is CRC-16/IBM-3740 with its bytes swapped, over `#` up to and including the last comma, four hexadecimal digits.
 //!
-//! SIGS and SIGQ (not measured yet) and the ACFPS of an aircraft (Mode A/C is not received) are always empty; SYSINFO holds NIC and
-//! NACv as far as the last position and velocity tell them, and is empty without either. TRACK and VELH are over the ground only: an
+//! SIGS and SIGQ (not measured yet) and the ACFPS of an aircraft (Mode A/C is not received) are always empty; SYSINFO is empty until
+//! a position, a velocity or a status message has told something of it; a part of it that is not known reads 0. TRACK and VELH are over the ground only: an
 //! aircraft that sends heading and airspeed leaves them empty.
 //!
 //! Source: the ADSBee 1090 document, section 4.1.
@@ -26,14 +26,41 @@ pub const MAX_LINE: usize = 128;
 /// One table of 512 bytes.
 static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_3740);
 
-/// FLAGS bits that are set so far; the rest of the document's table needs messages that are not decoded yet.
+/// FLAGS bits, the document's 4.1.1.1. IS_MILITARY (bit 2) is never set: DF19 is not decoded.
 mod flag {
     pub const IS_AIRBORNE: u32 = 1 << 0;
     pub const POSITION_VALID: u32 = 1 << 1;
+    pub const IS_CLASS_B2_GROUND_VEHICLE: u32 = 1 << 3;
+    pub const HAS_1090_ES_IN: u32 = 1 << 4;
+    pub const HAS_UAT_IN: u32 = 1 << 5;
+    pub const TCAS_OPERATIONAL: u32 = 1 << 6;
+    pub const SINGLE_ANTENNA: u32 = 1 << 7;
+    pub const SURFACE_POSITION_USES_HEADING: u32 = 1 << 8;
+    pub const HEADING_USES_MAGNETIC_NORTH: u32 = 1 << 9;
     pub const IDENT: u32 = 1 << 10;
     pub const ALERT: u32 = 1 << 11;
+    pub const TCAS_RA: u32 = 1 << 12;
     /// UPDATED_BARO_ALTITUDE; the five others follow in the order of [`tracker::Updated`].
     pub const FIRST_UPDATED: u32 = 17;
+}
+
+/// Lowest bits of SYSINFO's parts, the document's 4.1.1.3; the low twelve bits are NICNAC of other protocols.
+mod part {
+    pub const NIC: u32 = 0;
+    pub const NIC_BARO: u32 = 4;
+    pub const NACV: u32 = 5;
+    pub const NACP: u32 = 8;
+    pub const GVA: u32 = 12;
+    pub const SIL: u32 = 14;
+    pub const SDA: u32 = 16;
+    /// GAOK: the offset is known.
+    pub const ANTENNA_KNOWN: u32 = 18;
+    /// GAOD: half the metres.
+    pub const ANTENNA_DISTANCE: u32 = 19;
+    /// GAOR: right of the roll axis.
+    pub const ANTENNA_RIGHT: u32 = 21;
+    /// MDIM: greater of length and width, metres.
+    pub const GREATEST_DIMENSION: u32 = 22;
 }
 
 /// What the `#S` line tells, each over the last second; `None` is sent as an empty field.
@@ -148,7 +175,19 @@ fn degrees_field(line: &mut Text<'_>, angle: Option<i32>) -> Result<(), Full> {
 
 fn flags(aircraft: &Aircraft, now_ms: u64) -> u32 {
     let mut flags = u32::from(aircraft.updated_last_second().bits()) << flag::FIRST_UPDATED;
+    let status = aircraft.status(now_ms).unwrap_or_default();
     for (is_set, flag) in [
+        (status.b2_low(), flag::IS_CLASS_B2_GROUND_VEHICLE),
+        (status.has_es_in(), flag::HAS_1090_ES_IN),
+        (status.has_uat_in(), flag::HAS_UAT_IN),
+        (status.tcas_operational(), flag::TCAS_OPERATIONAL),
+        (aircraft.single_antenna(now_ms), flag::SINGLE_ANTENNA),
+        (
+            status.surface_heading(),
+            flag::SURFACE_POSITION_USES_HEADING,
+        ),
+        (status.magnetic_heading(), flag::HEADING_USES_MAGNETIC_NORTH),
+        (aircraft.tcas_ra(now_ms), flag::TCAS_RA),
         (aircraft.on_ground() == Some(false), flag::IS_AIRBORNE),
         (aircraft.position(now_ms).is_some(), flag::POSITION_VALID),
         (aircraft.ident(now_ms), flag::IDENT),
@@ -161,11 +200,30 @@ fn flags(aircraft: &Aircraft, now_ms: u64) -> u32 {
     flags
 }
 
-/// NIC in bits 0-3 and NACv in bits 5-7; a field not known reads 0, as the document's tables say.
+/// SYSINFO; what is not known of it reads 0, as the document's tables say. `None` where nothing is known.
 fn sysinfo(aircraft: &Aircraft, now_ms: u64) -> Option<u32> {
     let (nic, nacv) = (aircraft.nic(now_ms), aircraft.nacv(now_ms));
-    (nic.is_some() || nacv.is_some())
-        .then(|| u32::from(nic.unwrap_or(0)) | u32::from(nacv.unwrap_or(0)) << 5)
+    let (status, airframe) = (aircraft.status(now_ms), aircraft.airframe());
+    if nic.is_none() && nacv.is_none() && status.is_none() && !airframe.is_known() {
+        return None;
+    }
+    let status = status.unwrap_or_default();
+    let antenna = airframe.antenna();
+    let parts = [
+        (nic.unwrap_or(0), part::NIC),
+        (status.nic_baro().into(), part::NIC_BARO),
+        (nacv.unwrap_or(0), part::NACV),
+        (status.nac_p(), part::NACP),
+        (status.gva(), part::GVA),
+        (status.sil(), part::SIL),
+        (status.sda(), part::SDA),
+        (antenna.is_some().into(), part::ANTENNA_KNOWN),
+        (antenna.map_or(0, |a| a.metres / 2), part::ANTENNA_DISTANCE),
+        (antenna.is_some_and(|a| a.right).into(), part::ANTENNA_RIGHT),
+        (airframe.greatest_m().unwrap_or(0), part::GREATEST_DIMENSION),
+    ];
+    let pack = |word, (value, lowest)| word | u32::from(value) << lowest;
+    Some(parts.into_iter().fold(0, pack))
 }
 
 #[cfg(test)]

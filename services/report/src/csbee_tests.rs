@@ -216,3 +216,90 @@ fn surface_speed_is_rounded_to_whole_knots() {
     assert_eq!((fields[1], fields[9], fields[10]), ("300000", "141", "18"));
     assert_eq!([knots(3), knots(4), knots(11), knots(12)], [0, 1, 1, 2]);
 }
+
+/// FLAGS without the update bits, and SYSINFO.
+fn flags_and_sysinfo(messages: &[&str]) -> (u32, u32) {
+    let line = line_after(messages);
+    let fields: Vec<&str> = line.split(',').collect();
+    let hex = |text| u32::from_str_radix(text, 16).unwrap();
+    (hex(fields[1]) & 0x1FFFF, hex(fields[16]))
+}
+
+/// A DF17 of 486257, in the air by its CA, with this ME field.
+fn squitter(me: [u8; 7]) -> String {
+    let mut bytes = [0; 14];
+    bytes[..4].copy_from_slice(&[0x8D, 0x48, 0x62, 0x57]);
+    bytes[4..11].copy_from_slice(&me);
+    let parity = mode_s::crc24::remainder(&bytes[..11]).to_be_bytes();
+    bytes[11..].copy_from_slice(&parity[1..]);
+    bytes
+        .iter()
+        .map(|byte| std::format!("{byte:02X}"))
+        .collect()
+}
+
+#[test]
+fn sysinfo_of_an_airliner_in_the_air() {
+    // NICbaro 1, NACp 11, GVA 2, SIL 3, SDA 2; TCAS operational.
+    let (flags, sysinfo) = flags_and_sysinfo(&["8D486257F8230002004BB89498E3"]);
+    assert_eq!(flags, 1 | 1 << 6);
+    assert_eq!(sysinfo, 1 << 4 | 11 << 8 | 2 << 12 | 3 << 14 | 2 << 16);
+}
+
+#[test]
+fn sysinfo_of_an_airliner_on_the_surface() {
+    // NACv 4, NACp 10, SIL 3, SDA 2, antenna on the axis (right by 0 m), 45 m; surface positions hold heading.
+    let (flags, sysinfo) = flags_and_sysinfo(&["8C486257F9008602884A38A97BC2"]);
+    assert_eq!(flags, 1 << 8);
+    assert_eq!(
+        sysinfo,
+        4 << 5 | 10 << 8 | 3 << 14 | 2 << 16 | 1 << 18 | 1 << 21 | 45 << 22
+    );
+}
+
+#[test]
+fn the_antenna_offset_counts_pairs_of_metres() {
+    // Left by 6 m, code 3; size code 15, 90 m.
+    let surface = squitter([0xF9, 0, 15, 0, 3 << 5, 2 << 5, 0]);
+    let (_, sysinfo) = flags_and_sysinfo(&[&surface]);
+    assert_eq!(sysinfo, 1 << 18 | 3 << 19 | 90 << 22);
+}
+
+#[test]
+fn each_capability_sets_its_flag() {
+    const AIRBORNE: u32 = 1;
+    for (me, flag) in [
+        // B2 low, on the surface.
+        ([0xF9, 0b10, 0, 0, 0, 2 << 5, 0], 3),
+        // 1090ES IN and UAT IN.
+        ([0xF8, 0b1_0000, 0, 0, 0, 2 << 5, 0], 4),
+        ([0xF8, 0, 0b10_0000, 0, 0, 2 << 5, 0], 5),
+        // TCAS operational; the bit is turned round in version 1.
+        ([0xF8, 0b10_0000, 0, 0, 0, 2 << 5, 0], 6),
+        ([0xF8, 0, 0, 0, 0, 1 << 5, 0], 6),
+        // Single antenna.
+        ([0xF8, 0, 0, 0b100, 0, 2 << 5, 0], 7),
+        // Heading on the surface, magnetic north.
+        ([0xF9, 0, 0, 0, 0, 2 << 5, 0b1000], 8),
+        ([0xF8, 0, 0, 0, 0, 2 << 5, 0b100], 9),
+        // IDENT switch.
+        ([0xF8, 0, 0, 0b1_0000, 0, 2 << 5, 0], 10),
+        // RA, by the operational status and by its own broadcast.
+        ([0xF8, 0, 0, 0b10_0000, 0, 2 << 5, 0], 12),
+    ] {
+        let (flags, _) = flags_and_sysinfo(&[&squitter(me)]);
+        assert_eq!(flags, AIRBORNE | 1 << flag, "{me:02X?}");
+    }
+    let ra = line_after(&[&squitter([0xE2, 0x80, 0, 0, 0, 0, 0])]);
+    assert_eq!(ra.split(',').nth(1), Some("1001"));
+    // A broadcast tells nothing of SYSINFO.
+    assert_eq!(ra.split(',').nth(16), Some(""));
+}
+
+#[test]
+fn the_widest_sysinfo_fits_eight_digits() {
+    let surface = squitter([0xF9, 0, 0xEF, 0b11, 7 << 5, 2 << 5 | 15, 0xFF]);
+    let air = squitter([0xF8, 0x3F, 0xFF, 0x3F, 0xFF, 2 << 5 | 31, 0xFF]);
+    let (_, sysinfo) = flags_and_sysinfo(&[&surface, &air]);
+    assert_eq!(sysinfo >> 16, 90 << 6 | 1 << 5 | 3 << 3 | 1 << 2 | 3);
+}

@@ -2,8 +2,10 @@
 
 use crate::field::{Field, age_ms};
 use crate::place::Places;
+use crate::status::{Airframe, Status};
+use mode_s::nic::nic;
 use mode_s::{Address, Airspeed, AltitudeFt, Callsign, Category, CentiDegrees, Icao};
-use mode_s::{ModeACode, Position, VerticalRate};
+use mode_s::{ModeACode, NicSupplements, Position, VerticalRate};
 
 /// How long a position, an altitude or a velocity is still told after its last update, ms. As long as the aircraft itself.
 pub const FIELD_LIFE_MS: u32 = 60_000;
@@ -41,6 +43,14 @@ impl Updated {
     }
 }
 
+/// What the last position message says of its own integrity.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Integrity {
+    pub(crate) type_code: u8,
+    /// Bit 8 of an airborne position; `false` on the surface.
+    pub(crate) nic_b_or_single_antenna: bool,
+}
+
 /// A tracked aircraft.
 #[derive(Clone, Copy, Debug)]
 pub struct Aircraft {
@@ -60,8 +70,12 @@ pub struct Aircraft {
     pub(crate) on_ground: Field<bool>,
     pub(crate) ident: Field<bool>,
     pub(crate) alert: Field<bool>,
-    pub(crate) nic: Field<u8>,
+    pub(crate) integrity: Field<Integrity>,
     pub(crate) nacv: Field<u8>,
+    pub(crate) status: Field<Status>,
+    pub(crate) tcas_ra: Field<bool>,
+    pub(crate) airframe: Airframe,
+    pub(crate) version: u8,
     pub(crate) places: Places,
     pub(crate) updated_now: Updated,
     pub(crate) updated_last_second: Updated,
@@ -97,8 +111,15 @@ impl Aircraft {
         on_ground: Field::unknown(false),
         ident: Field::unknown(false),
         alert: Field::unknown(false),
-        nic: Field::unknown(0),
+        integrity: Field::unknown(Integrity {
+            type_code: 0,
+            nic_b_or_single_antenna: false,
+        }),
         nacv: Field::unknown(0),
+        status: Field::unknown(Status::NONE),
+        tcas_ra: Field::unknown(false),
+        airframe: Airframe::NONE,
+        version: 0,
         places: Places::NONE,
         updated_now: Updated(0),
         updated_last_second: Updated(0),
@@ -194,12 +215,50 @@ impl Aircraft {
         self.alert.within(FIELD_LIFE_MS, now_ms) == Some(true)
     }
 
-    /// NIC by the type code of the last position message.
+    /// NIC of the last position message, by the version and the supplements as far as they are known.
     pub fn nic(&self, now_ms: u64) -> Option<u8> {
-        self.nic.within(FIELD_LIFE_MS, now_ms)
+        let position = self.integrity.within(FIELD_LIFE_MS, now_ms)?;
+        let status = self.status(now_ms).unwrap_or_default();
+        let supplements = NicSupplements {
+            a: status.nic_a(),
+            b: position.nic_b_or_single_antenna,
+            c: status.nic_c(),
+        };
+        Some(nic(position.type_code, self.version, supplements))
     }
 
-    /// NACv of the last velocity message.
+    /// Version of ADS-B: 0 until an operational status tells it.
+    pub fn version(&self) -> u8 {
+        self.version
+    }
+
+    /// Quality and equipment, where a status message has told of them.
+    pub fn status(&self, now_ms: u64) -> Option<Status> {
+        self.status.within(FIELD_LIFE_MS, now_ms)
+    }
+
+    /// Size and place of the antenna.
+    pub fn airframe(&self) -> Airframe {
+        self.airframe
+    }
+
+    /// One antenna alone: told by airborne positions before version 2, by the operational status from then on.
+    pub fn single_antenna(&self, now_ms: u64) -> bool {
+        if self.version < 2 {
+            let position = self.integrity.within(FIELD_LIFE_MS, now_ms);
+            position.is_some_and(|position| position.nic_b_or_single_antenna)
+        } else {
+            self.status(now_ms)
+                .is_some_and(|status| status.single_antenna())
+        }
+    }
+
+    /// A resolution advisory is active.
+    pub fn tcas_ra(&self, now_ms: u64) -> bool {
+        self.tcas_ra.within(FIELD_LIFE_MS, now_ms) == Some(true)
+    }
+
+    /// NACv of the last velocity message, or of an operational status on the surface.
     pub fn nacv(&self, now_ms: u64) -> Option<u8> {
         self.nacv.within(FIELD_LIFE_MS, now_ms)
     }
@@ -225,8 +284,10 @@ impl Aircraft {
         self.vertical_rate.expire(FIELD_LIFE_MS, now_ms);
         self.ident.expire(FIELD_LIFE_MS, now_ms);
         self.alert.expire(FIELD_LIFE_MS, now_ms);
-        self.nic.expire(FIELD_LIFE_MS, now_ms);
+        self.integrity.expire(FIELD_LIFE_MS, now_ms);
         self.nacv.expire(FIELD_LIFE_MS, now_ms);
+        self.status.expire(FIELD_LIFE_MS, now_ms);
+        self.tcas_ra.expire(FIELD_LIFE_MS, now_ms);
         self.places.second_ends(now_ms);
         self.updated_last_second = core::mem::take(&mut self.updated_now);
         self.frames_last_second = core::mem::take(&mut self.frames_now);

@@ -7,16 +7,20 @@
 //! | DF5, 21 | on ground, IDENT, alert, Mode A code |
 //! | DF11, CA of DF17 | on ground |
 //! | identification | callsign, category |
-//! | surface position | on ground, ground speed, track, position, NIC |
-//! | airborne position | airborne, altitude of either kind, IDENT, alert, position, NIC |
+//! | surface position | on ground, ground speed, track, position, type code for NIC |
+//! | airborne position | airborne, altitude of either kind, IDENT, alert, position, type code and bit 8 for NIC |
 //! | velocity | ground speed and track, or airspeed and heading; vertical rate, GNSS-baro difference, NACv |
+//! | emergency status | Mode A code |
+//! | ACAS RA | TCAS RA |
+//! | target state | status (NACp, SIL, NICbaro, TCAS), TCAS RA in version 1 |
+//! | operational status | version, status, NACv, airframe, TCAS RA, IDENT |
 
-use crate::aircraft::{Aircraft, Updated};
+use crate::aircraft::{Aircraft, Integrity, Updated};
 use crate::counters::PositionOutcome;
 use crate::place::{KnownPlaces, Surroundings};
 use mode_s::{
     AirbornePosition, AltitudeFt, AltitudeSource, Body, Cpr, FlightStatus, HorizontalVelocity, Me,
-    Message, SurfacePosition, Velocity,
+    Message, OperationalStatus, SurfacePosition, TargetState, Velocity,
 };
 
 /// Most time between pressure altitude and GNSS-baro difference that are added, ms. Within it a steep climb changes neither much.
@@ -87,13 +91,35 @@ impl Aircraft {
                 self.hear_velocity(velocity, at_ms);
                 None
             }
+            Me::Emergency(emergency) => {
+                if let Some(squawk) = emergency.squawk {
+                    self.squawk.set(squawk, at_ms);
+                }
+                None
+            }
+            Me::AcasRa(ra) => {
+                self.tcas_ra.set(ra.is_active(), at_ms);
+                None
+            }
+            Me::TargetState(state) => {
+                self.hear_target(state, at_ms);
+                None
+            }
+            Me::OperationalStatus(status) => {
+                self.hear_operational(status, at_ms);
+                None
+            }
             Me::NotDecoded { .. } => None,
         }
     }
 
     fn hear_surface(&mut self, position: &SurfacePosition, at_ms: u64) {
         self.on_ground.set(true, at_ms);
-        self.nic.set(position.nic, at_ms);
+        let integrity = Integrity {
+            type_code: position.type_code,
+            nic_b_or_single_antenna: false,
+        };
+        self.integrity.set(integrity, at_ms);
         if let Some(speed) = position.ground_speed_eighths {
             self.ground_speed.set(speed, at_ms);
             self.updated_now.mark(Updated::HORIZONTAL_VELOCITY);
@@ -106,7 +132,11 @@ impl Aircraft {
 
     fn hear_airborne(&mut self, position: &AirbornePosition, at_ms: u64) {
         self.on_ground.set(false, at_ms);
-        self.nic.set(position.nic, at_ms);
+        let integrity = Integrity {
+            type_code: position.type_code,
+            nic_b_or_single_antenna: position.nic_b_or_single_antenna,
+        };
+        self.integrity.set(integrity, at_ms);
         let status = position.surveillance_status;
         self.ident.set(status == SS_IDENT, at_ms);
         self.alert.set(matches!(status, 1 | 2), at_ms);
@@ -145,6 +175,32 @@ impl Aircraft {
         if let Some(difference) = velocity.gnss_minus_baro_ft {
             self.gnss_minus_baro.set(difference, at_ms);
             self.add_difference(at_ms);
+        }
+    }
+
+    fn hear_target(&mut self, state: &TargetState, at_ms: u64) {
+        let mut status = self.status(at_ms).unwrap_or_default();
+        status.hear_target(state);
+        self.status.set(status, at_ms);
+        if let Some(active) = state.tcas_ra {
+            self.tcas_ra.set(active, at_ms);
+        }
+    }
+
+    fn hear_operational(&mut self, told: &OperationalStatus, at_ms: u64) {
+        self.version = told.version;
+        let mut status = self.status(at_ms).unwrap_or_default();
+        status.hear_operational(told);
+        self.status.set(status, at_ms);
+        self.airframe.hear_operational(told);
+        if let Some(nacv) = told.nac_v {
+            self.nacv.set(nacv, at_ms);
+        }
+        if let Some(active) = told.tcas_ra {
+            self.tcas_ra.set(active, at_ms);
+        }
+        if let Some(ident) = told.ident {
+            self.ident.set(ident, at_ms);
         }
     }
 

@@ -22,9 +22,11 @@ mod field;
 mod hear;
 mod index;
 mod place;
+mod status;
 mod table;
 
 pub use aircraft::{Aircraft, Updated};
 pub use counters::{Counters, Outcome, PositionOutcome};
 pub use field::Field;
+pub use status::{Airframe, Status};
 pub use table::{TIMEOUT_MS, Tracker};

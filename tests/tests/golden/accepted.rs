@@ -152,6 +152,27 @@ pub static ACCEPTED: &[Accepted] = &[
         applies: |d| d.subject == Subject::GlobalPlace && d.ours == Said::Nothing,
         counts: [10, 6],
     },
+    Accepted {
+        peer: Peer::AdsbDeku,
+        reason: "adsb_deku reads the source bit of a selected altitude as the altitude's highest bit: FMS adds 65 536 ft",
+        applies: |d| {
+            d.is_of(Field::SelectedAltitude)
+                && d.ours.number().map(|feet| feet + 65_536.0) == d.theirs.number()
+        },
+        counts: [3, 0],
+    },
+    Accepted {
+        peer: Peer::AdsbDeku,
+        reason: "adsb_deku reads a selected altitude of code 1 as none; the code less one is the value, so 1 is 0 ft",
+        applies: |d| d.is_of(Field::SelectedAltitude) && is_selected_at_zero(d),
+        counts: [0, 41],
+    },
+    Accepted {
+        peer: Peer::Rs1090,
+        reason: "rs1090 reads a selected altitude of code 1 as none; the code less one is the value, so 1 is 0 ft",
+        applies: |d| d.is_of(Field::SelectedByFms) && is_selected_at_zero(d),
+        counts: [0, 41],
+    },
 ];
 
 /// The ME field, where our decoder reads one.
@@ -198,4 +219,13 @@ fn is_meaningless_callsign(d: &Difference) -> bool {
     d.is_of(Field::Callsign)
         && d.ours == Said::Nothing
         && matches!(&d.theirs, Said::Text(text) if text.contains('#'))
+}
+
+/// A target state whose selected altitude has code 1, which a peer takes for none.
+fn is_selected_at_zero(d: &Difference) -> bool {
+    // Bits 10-20 of ME.
+    let [_, second, third, ..] = d.frame.bytes()[4..] else {
+        return false;
+    };
+    (u16::from(second & 0x7F) << 4 | u16::from(third >> 4)) == 1 && d.theirs == Said::Nothing
 }

@@ -161,7 +161,11 @@ pub fn is_same(field: Field, ours: &Said, theirs: &Said) -> bool {
     let away = (a - b).abs();
     match field {
         Field::GroundSpeed => away <= SPEED_ROUNDING_KT,
-        Field::Track | Field::Heading => away.min(360.0 - away) <= ANGLE_ROUNDING_DEGREES,
+        // f32 against tenths.
+        Field::PressureSetting => away <= 0.001,
+        Field::Track | Field::Heading | Field::SelectedHeading => {
+            away.min(360.0 - away) <= ANGLE_ROUNDING_DEGREES
+        }
         _ => away == 0.0,
     }
 }

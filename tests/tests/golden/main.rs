@@ -101,7 +101,7 @@ fn compare_log(log: Log, compared: [(Peer, u32); 2]) {
 fn long_flight_is_read_as_the_peers_read_it() {
     compare_log(
         Log::LongFlight,
-        [(Peer::Rs1090, 1_327_928), (Peer::AdsbDeku, 882_512)],
+        [(Peer::Rs1090, 1_405_209), (Peer::AdsbDeku, 959_775)],
     );
 }
 
@@ -109,6 +109,6 @@ fn long_flight_is_read_as_the_peers_read_it() {
 fn lax_log_is_read_as_the_peers_read_it() {
     compare_log(
         Log::Lax,
-        [(Peer::Rs1090, 1_966_229), (Peer::AdsbDeku, 1_290_121)],
+        [(Peer::Rs1090, 2_109_858), (Peer::AdsbDeku, 1_431_203)],
     );
 }

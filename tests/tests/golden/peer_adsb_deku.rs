@@ -3,8 +3,8 @@
 use crate::peer_rs1090::callsign;
 use crate::view::{Field, Said, View};
 use adsb_deku::adsb::{
-    AirborneVelocity, AirborneVelocitySubType, ME, StatusForGroundTrack, TypeCoding,
-    VerticalRateSource,
+    AirborneVelocity, AirborneVelocitySubType, AircraftStatusType, ME, OperationStatus,
+    StatusForGroundTrack, TargetStateAndStatusInformation, TypeCoding, VerticalRateSource,
 };
 use adsb_deku::{AC13Field, Altitude, CPRFormat, Capability, DF, Frame as Read, ICAO, Sign};
 use mode_s::Frame;
@@ -138,13 +138,94 @@ fn me(me: &ME) -> View {
         ME::Reserved0(_) => 23,
         ME::SurfaceSystemStatus(_) => 24,
         ME::Reserved1 { id, .. } => *id,
-        ME::AircraftStatus(_) => 28,
-        ME::TargetStateAndStatusInformation(_) => 29,
+        ME::AircraftStatus(status) => {
+            if status.sub_type == AircraftStatusType::EmergencyPriorityStatus {
+                let state = status.emergency_state as i64;
+                view.insert(Field::Emergency, Said::Whole(state));
+                let squawk = format!("{:04x}", status.squawk);
+                view.insert(Field::Squawk, Said::Text(squawk));
+            }
+            28
+        }
+        ME::TargetStateAndStatusInformation(state) => {
+            if state.subtype == 1 {
+                view.append(&mut target(state));
+            }
+            29
+        }
         ME::AircraftOperationalCoordination(_) => 30,
-        ME::AircraftOperationStatus(_) => 31,
+        ME::AircraftOperationStatus(status) => {
+            view.append(&mut operational(status));
+            31
+        }
     };
     view.insert(Field::TypeCode, Said::Whole(type_code.into()));
     view
+}
+
+/// It reads the SIL supplement as the source of the altitude, so that is not compared.
+fn target(state: &TargetStateAndStatusInformation) -> View {
+    let mode = |bit: bool| Said::whole(state.mode_validity.then_some(bit));
+    // It gives 0 for "none".
+    let feet = (state.altitude != 0).then_some(state.altitude);
+    let hectopascals = (state.qnh != 0.0).then_some(f64::from(state.qnh));
+    let heading = state.is_heading.then_some(f64::from(state.heading));
+    View::from([
+        (Field::SelectedAltitude, Said::whole(feet)),
+        (Field::PressureSetting, Said::real(hectopascals)),
+        (Field::SelectedHeading, Said::real(heading)),
+        (Field::NacP, Said::Whole(state.nacp.into())),
+        (Field::NicBaro, Said::Whole(state.nicbaro.into())),
+        (Field::Sil, Said::Whole(state.sil.into())),
+        (Field::Autopilot, mode(state.autopilot)),
+        (Field::Vnav, mode(state.vnac)),
+        (Field::AltitudeHold, mode(state.alt_hold)),
+        (Field::Approach, mode(state.approach)),
+        (Field::TcasOperational, Said::Whole(state.tcas.into())),
+        (Field::Lnav, mode(state.lnav)),
+    ])
+}
+
+/// Both logs hold version 2 alone. It keeps the operational modes to itself.
+fn operational(status: &OperationStatus) -> View {
+    let fields = match status {
+        OperationStatus::Airborne(status) => vec![
+            (Field::Version, status.version_number as u8),
+            (Field::TcasOperational, status.capability_class.acas),
+            (Field::EsIn, status.capability_class.cdti),
+            (Field::NicA, status.nic_supplement_a),
+            (Field::NacP, status.navigational_accuracy_category),
+            (Field::Gva, status.geometric_vertical_accuracy),
+            (Field::Sil, status.source_integrity_level),
+            (Field::NicBaro, status.barometric_altitude_integrity),
+            (
+                Field::MagneticHeading,
+                status.horizontal_reference_direction,
+            ),
+            (Field::SilSupplement, status.sil_supplement),
+        ],
+        OperationStatus::Surface(status) => vec![
+            (Field::Version, status.version_number as u8),
+            (Field::EsIn, status.capability_class.es1090),
+            (Field::B2Low, status.capability_class.b2_low),
+            (Field::UatIn, status.capability_class.uat_in),
+            (Field::Nacv, status.capability_class.nac_v),
+            (Field::NicC, status.capability_class.nic_supplement_c),
+            (Field::SizeCode, status.lw_codes),
+            (Field::AntennaOffset, status.gps_antenna_offset),
+            (Field::NicA, status.nic_supplement_a),
+            (Field::NacP, status.navigational_accuracy_category),
+            (Field::Sil, status.source_integrity_level),
+            (
+                Field::MagneticHeading,
+                status.horizontal_reference_direction,
+            ),
+            (Field::SilSupplement, status.sil_supplement),
+        ],
+        OperationStatus::Reserved(..) => Vec::new(),
+    };
+    let whole = |(field, value): (Field, u8)| (field, Said::Whole(value.into()));
+    fields.into_iter().map(whole).collect()
 }
 
 fn airborne(position: &Altitude, is_gnss: bool) -> View {

@@ -8,6 +8,11 @@ use rs1090::decode::bds::bds06::SurfacePosition;
 use rs1090::decode::bds::bds09::{
     AirborneVelocity, AirborneVelocitySubType, AirspeedType, VerticalRateSource,
 };
+use rs1090::decode::bds::bds61::AircraftStatusType;
+use rs1090::decode::bds::bds62::{AltSource, TargetStateAndStatusInformation};
+use rs1090::decode::bds::bds65::{
+    ADSBVersionAirborne, ADSBVersionSurface, AircraftOperationStatus,
+};
 use rs1090::decode::cpr::CPRFormat;
 use rs1090::decode::{DF, Message};
 
@@ -114,13 +119,115 @@ fn me(me: &ME) -> View {
         ME::Reserved0(_) => 23,
         ME::SurfaceSystemStatus(_) => 24,
         ME::Reserved1 { _id, .. } => *_id,
-        ME::BDS61(_) => 28,
-        ME::BDS62(_) => 29,
+        ME::BDS61(status) => {
+            if status.subtype == AircraftStatusType::EmergencyPriorityStatus {
+                let state = status.emergency_state as i64;
+                view.insert(Field::Emergency, Said::Whole(state));
+                view.insert(Field::Squawk, Said::Text(status.squawk.to_string()));
+            }
+            28
+        }
+        ME::BDS62(state) => {
+            if state.subtype == 1 {
+                view.append(&mut target(state));
+            }
+            29
+        }
         ME::AircraftOperationalCoordination(_) => 30,
-        ME::BDS65(_) => 31,
+        ME::BDS65(status) => {
+            view.append(&mut operational(status));
+            31
+        }
     };
     view.insert(Field::TypeCode, Said::Whole(type_code.into()));
     view
+}
+
+/// Its selected altitude is rounded down to hundreds of feet, so it is not compared.
+fn target(state: &TargetStateAndStatusInformation) -> View {
+    let is_fms = state
+        .selected_altitude
+        .map(|_| state.alt_source == AltSource::FMS);
+    View::from([
+        (Field::SelectedByFms, Said::whole(is_fms)),
+        (
+            Field::PressureSetting,
+            Said::real(state.barometric_setting.map(f64::from)),
+        ),
+        (
+            Field::SelectedHeading,
+            Said::real(state.selected_heading.map(f64::from)),
+        ),
+        (Field::NacP, Said::Whole(state.nac_p.into())),
+        (Field::NicBaro, Said::Whole(state.nic_baro.into())),
+        (Field::Sil, Said::Whole(state.sil.into())),
+        (Field::Autopilot, Said::whole(state.autopilot)),
+        (Field::Vnav, Said::whole(state.vnav_mode)),
+        (Field::AltitudeHold, Said::whole(state.alt_hold)),
+        (Field::Approach, Said::whole(state.approach_mode)),
+        (
+            Field::TcasOperational,
+            Said::Whole(state.tcas_operational.into()),
+        ),
+        (Field::Lnav, Said::whole(state.lnav_mode)),
+    ])
+}
+
+/// Both logs hold version 2 alone. It keeps the operational modes to itself.
+fn operational(status: &AircraftOperationStatus) -> View {
+    match status {
+        AircraftOperationStatus::Airborne(status) => {
+            let class = &status.capability_class;
+            let version = status.version.version_number();
+            let mut view = View::from([
+                (Field::Version, Said::Whole(version.into())),
+                (Field::TcasOperational, Said::Whole(class.acas.into())),
+                (Field::EsIn, Said::Whole(class.cdti.into())),
+            ]);
+            if let ADSBVersionAirborne::DOC9871AppendixC(v2) = &status.version {
+                for (field, value) in [
+                    (Field::NicA, v2.nic_a),
+                    (Field::NacP, v2.nac_p),
+                    (Field::Gva, v2.geometry_vertical_accuracy),
+                    (Field::Sil, v2.sil),
+                    (Field::NicBaro, v2.barometric_altitude_integrity),
+                    (Field::MagneticHeading, v2.horizontal_reference_direction),
+                    (Field::SilSupplement, v2.sil_s),
+                ] {
+                    view.insert(field, Said::Whole(value.into()));
+                }
+            }
+            view
+        }
+        AircraftOperationStatus::Surface(status) => {
+            let class = &status.capability_class;
+            let mut view = View::from([
+                (Field::EsIn, Said::Whole(class.es1090.into())),
+                (Field::B2Low, Said::Whole(class.b2_low.into())),
+                (Field::UatIn, Said::Whole(class.uat_in.into())),
+                (Field::Nacv, Said::Whole(class.nac_v.into())),
+                (Field::NicC, Said::Whole(class.nic_c.into())),
+                (Field::SizeCode, Said::Whole(status.lw_codes.into())),
+                (
+                    Field::AntennaOffset,
+                    Said::Whole(status.gps_antenna_offset.into()),
+                ),
+            ]);
+            if let ADSBVersionSurface::DOC9871AppendixC(v2) = &status.version {
+                for (field, value) in [
+                    (Field::NicA, v2.nic_a),
+                    (Field::NacP, v2.nac_p),
+                    (Field::Sil, v2.sil),
+                    (Field::MagneticHeading, v2.horizontal_reference_direction),
+                    (Field::SilSupplement, v2.sil_supplement),
+                ] {
+                    view.insert(field, Said::Whole(value.into()));
+                }
+            }
+            view
+        }
+        AircraftOperationStatus::Reserved { .. } => View::new(),
+    }
 }
 
 /// A callsign without spaces; an empty one is none.

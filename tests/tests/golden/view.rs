@@ -1,7 +1,8 @@
 //! What a decoder reads in one frame, in one form for all decoders.
 
 use mode_s::{
-    AltitudeSource, Body, Cpr, CprFormat, Frame, HorizontalVelocity, Me, Message, Parity,
+    AltitudeSource, Body, Cpr, CprFormat, Frame, HorizontalVelocity, Me, Message,
+    OperationalStatus, Parity, SelectionSource, TargetState,
 };
 use std::collections::BTreeMap;
 
@@ -57,6 +58,38 @@ pub enum Field {
     CprLatitude,
     /// XZ.
     CprLongitude,
+    /// Of TC 28, subtype 1.
+    Emergency,
+    /// Feet.
+    SelectedAltitude,
+    /// 1 FMS, 0 MCP/FCU.
+    SelectedByFms,
+    /// Hectopascals.
+    PressureSetting,
+    /// Degrees.
+    SelectedHeading,
+    NacP,
+    NicBaro,
+    Sil,
+    Autopilot,
+    Vnav,
+    AltitudeHold,
+    Approach,
+    TcasOperational,
+    Lnav,
+    /// Of ADS-B.
+    Version,
+    NicA,
+    NicC,
+    Gva,
+    SilSupplement,
+    /// HRD.
+    MagneticHeading,
+    EsIn,
+    UatIn,
+    B2Low,
+    SizeCode,
+    AntennaOffset,
 }
 
 /// What a decoder says of a field.
@@ -222,11 +255,85 @@ fn ours_me(me: &Me) -> View {
                 Said::whole(velocity.gnss_minus_baro_ft),
             );
         }
+        Me::Emergency(status) => {
+            say(Field::TypeCode, Said::Whole(28));
+            say(Field::Emergency, Said::Whole(status.state.code().into()));
+            let squawk = status.squawk.map(|code| format!("{:04o}", code.0));
+            say(Field::Squawk, squawk.map_or(Said::Nothing, Said::Text));
+        }
+        Me::AcasRa(_) => say(Field::TypeCode, Said::Whole(28)),
+        Me::TargetState(state) => {
+            say(Field::TypeCode, Said::Whole(29));
+            view.append(&mut ours_target(state));
+        }
+        Me::OperationalStatus(status) => {
+            say(Field::TypeCode, Said::Whole(31));
+            view.append(&mut ours_operational(status));
+        }
         Me::NotDecoded { type_code, .. } => {
             say(Field::TypeCode, Said::Whole((*type_code).into()));
         }
     }
     view
+}
+
+fn ours_target(state: &TargetState) -> View {
+    let selected = state.selected_altitude;
+    let tenths = state.pressure_setting_tenths;
+    let modes = state.modes;
+    View::from([
+        (
+            Field::SelectedAltitude,
+            Said::whole(selected.map(|selected| selected.altitude.0)),
+        ),
+        (
+            Field::SelectedByFms,
+            Said::whole(selected.map(|selected| selected.source == SelectionSource::Fms)),
+        ),
+        (
+            Field::PressureSetting,
+            Said::real(tenths.map(|tenths| f64::from(tenths) / 10.0)),
+        ),
+        (Field::SelectedHeading, degrees(state.selected_heading)),
+        (Field::NacP, Said::Whole(state.nac_p.into())),
+        (Field::NicBaro, Said::Whole(state.nic_baro.into())),
+        (Field::Sil, Said::Whole(state.sil.into())),
+        (
+            Field::TcasOperational,
+            Said::Whole(state.tcas_operational.into()),
+        ),
+        (Field::Autopilot, Said::whole(modes.map(|m| m.autopilot))),
+        (Field::Vnav, Said::whole(modes.map(|m| m.vnav))),
+        (
+            Field::AltitudeHold,
+            Said::whole(modes.map(|m| m.altitude_hold)),
+        ),
+        (Field::Approach, Said::whole(modes.map(|m| m.approach))),
+        (Field::Lnav, Said::whole(modes.map(|m| m.lnav))),
+    ])
+}
+
+fn ours_operational(status: &OperationalStatus) -> View {
+    let size = status.size.map(|size| size.0);
+    let offset = status.antenna_offset.map(|offset| offset.0);
+    View::from([
+        (Field::Version, Said::Whole(status.version.into())),
+        (Field::NicA, Said::whole(status.nic_a)),
+        (Field::NicC, Said::whole(status.nic_c)),
+        (Field::NacP, Said::whole(status.nac_p)),
+        (Field::Nacv, Said::whole(status.nac_v)),
+        (Field::Gva, Said::whole(status.gva)),
+        (Field::Sil, Said::whole(status.sil)),
+        (Field::SilSupplement, Said::whole(status.sil_per_sample)),
+        (Field::NicBaro, Said::whole(status.nic_baro)),
+        (Field::MagneticHeading, Said::whole(status.magnetic_heading)),
+        (Field::TcasOperational, Said::whole(status.tcas_operational)),
+        (Field::EsIn, Said::whole(status.es_in)),
+        (Field::UatIn, Said::whole(status.uat_in)),
+        (Field::B2Low, Said::whole(status.b2_low)),
+        (Field::SizeCode, Said::whole(size)),
+        (Field::AntennaOffset, Said::whole(offset)),
+    ])
 }
 
 fn degrees(angle: Option<mode_s::CentiDegrees>) -> Said {

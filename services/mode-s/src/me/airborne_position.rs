@@ -5,9 +5,8 @@
 //!   | TC |SS|B| altitude|T |F | CPR lat  | CPR lon    |
 //! ```
 //! TC 9-18 carry barometric altitude, TC 20-22 the GNSS height above the ellipsoid in the same 12-bit code (some open decoders read
-//! metres there; DO-260 gives one coding for both). TC also tells how far
-//! the position can be wrong. Source: "The 1090 Megahertz Riddle"; NIC from DO-260B's table by type code with the supplements taken as 0, which gives the
-//! lower of the possible values.
+//! metres there; DO-260 gives one coding for both). TC and B tell
+//! how far the position can be wrong ([`crate::nic`]). Source: "The 1090 Megahertz Riddle".
 
 use crate::altitude::{Ac12, AltitudeFt};
 use crate::cpr::{Cpr, CprFormat, CprKind};
@@ -44,8 +43,8 @@ pub struct AirbornePosition {
     pub utc_synchronised: bool,
     /// The encoded position; `None` where the sender had none (all bits 0).
     pub cpr: Option<Cpr>,
-    /// NIC, 0-11: the least that TC allows.
-    pub nic: u8,
+    /// NIC supplement B of version 2; before, it says that there is one antenna alone.
+    pub nic_b_or_single_antenna: bool,
 }
 
 impl AirbornePosition {
@@ -65,7 +64,7 @@ impl AirbornePosition {
                 .map(|altitude| PositionAltitude { source, altitude }),
             utc_synchronised: me.bit(21),
             cpr: cpr(me, CprKind::Airborne),
-            nic: nic(type_code),
+            nic_b_or_single_antenna: me.bit(8),
         }
     }
 }
@@ -86,22 +85,6 @@ pub(super) fn cpr(me: MeBits, kind: CprKind) -> Option<Cpr> {
         latitude,
         longitude,
     })
-}
-
-/// NIC of an airborne type code with the supplements 0.
-const fn nic(type_code: u8) -> u8 {
-    match type_code {
-        9 | 20 => 11,
-        10 | 21 => 10,
-        11 => 8,
-        12 => 7,
-        13 => 6,
-        14 => 5,
-        15 => 4,
-        16 => 2,
-        17 => 1,
-        _ => 0,
-    }
 }
 
 #[cfg(test)]
@@ -132,22 +115,19 @@ mod tests {
     }
 
     #[test]
-    fn nic_by_type_code_without_supplements() {
-        let nics = [11, 10, 8, 7, 6, 5, 4, 2, 1, 0];
-        for (type_code, nic) in (9..=18).zip(nics) {
-            assert_eq!(position(type_code, 0).nic, nic, "TC {type_code}");
-        }
-        for (type_code, nic) in (20..=22).zip([11, 10, 0]) {
-            assert_eq!(position(type_code, 0).nic, nic, "TC {type_code}");
-        }
-    }
-
-    #[test]
     fn surveillance_status_and_no_position() {
         for status in 0..4 {
             let position = position(11, status);
             assert_eq!(position.surveillance_status, status);
+            assert!(!position.nic_b_or_single_antenna);
             assert_eq!(position.cpr, None);
         }
+    }
+
+    #[test]
+    fn bit_8_is_supplement_b_or_one_antenna() {
+        let first = 11 << 3 | 1;
+        let position = AirbornePosition::decode(MeBits([first, 0, 0, 0, 0, 0, 0]));
+        assert!(position.nic_b_or_single_antenna);
     }
 }

@@ -25,8 +25,6 @@ pub struct SurfacePosition {
     pub utc_synchronised: bool,
     /// The encoded position; `None` where the sender had none.
     pub cpr: Option<Cpr>,
-    /// NIC, 0-11: the least that TC allows.
-    pub nic: u8,
 }
 
 impl SurfacePosition {
@@ -42,12 +40,6 @@ impl SurfacePosition {
                 .then(|| CentiDegrees(((me.bits(14, 20) * 36_000 + 64) / 128) as u16)),
             utc_synchronised: me.bit(21),
             cpr: cpr(me, CprKind::Surface),
-            nic: match type_code {
-                5 => 11,
-                6 => 10,
-                7 => 8,
-                _ => 0,
-            },
         }
     }
 }
