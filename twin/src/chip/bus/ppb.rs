@@ -13,8 +13,6 @@ impl Bus {
                 let at = (address & 0x1c) as usize;
                 u32::from_le_bytes(nvic.priority[at..at + 4].try_into().expect("four bytes"))
             }
-            // SYST_CSR, SYST_RVR, SYST_CVR: the timer is off, as no image uses it.
-            0xe010..=0xe018 => 0,
             0xed00 | 0xed04 | 0xed08 | 0xed0c | 0xed1c | 0xed20 => self.ppb[core].read32(address),
             0xed10 => 0,
             // CCR: stack aligned to 8, unaligned accesses trap.
