@@ -29,19 +29,15 @@ fn squitter(arguments: &[&str]) -> Output {
         .expect("squitter runs")
 }
 
+/// Replays `modes1.bin` with these further options.
+fn replay_modes1(options: &[&str]) -> Output {
+    let recording = modes1();
+    let base = ["replay", &recording, "--format", "cu8", "--rate", "2000000"];
+    squitter(&[&base, options].concat())
+}
+
 fn replayed(engine: &str) -> String {
-    let output = squitter(&[
-        "replay",
-        &modes1(),
-        "--format",
-        "cu8",
-        "--rate",
-        "2000000",
-        "--engine",
-        engine,
-        "--out",
-        "hex",
-    ]);
+    let output = replay_modes1(&["--engine", engine, "--out", "hex"]);
     assert!(
         output.status.success(),
         "{}",
@@ -196,15 +192,7 @@ fn a_missing_image_is_told_with_what_to_do() {
 
 #[test]
 fn a_profile_names_the_functions_of_both_cores() {
-    let output = squitter(&[
-        "replay",
-        &modes1(),
-        "--format",
-        "cu8",
-        "--rate",
-        "2000000",
-        "--profile",
-    ]);
+    let output = replay_modes1(&["--profile"]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(said.contains("core 0: busy "), "{said}");
     let core1 = said
