@@ -10,12 +10,15 @@
 //!
 //! Not modelled: bus contention, XIP cache misses (cycle counts are optimistic for code in flash), SRAM banks.
 
+mod blocks;
 mod cores;
 mod fault;
 mod peripherals;
 mod ppb;
+mod registers;
 mod transfers;
 
+use blocks::reset;
 pub use fault::{Fault, ResetCause};
 
 use rp2040_emu::bus::ppb::Ppb;
@@ -40,23 +43,6 @@ const SRAM_BASE: u32 = 0x2000_0000;
 const CODE_GRANULE: usize = 256;
 /// Mask ROM.
 pub const ROM: usize = 16 * 1024;
-
-/// RESETS bits of what the model resets.
-mod reset {
-    pub const DMA: u32 = 1 << 2;
-    pub const IO_BANK0: u32 = 1 << 5;
-    pub const PADS_BANK0: u32 = 1 << 8;
-    pub const PIO0: u32 = 1 << 10;
-    pub const PIO1: u32 = 1 << 11;
-    pub const PLL_SYS: u32 = 1 << 12;
-    pub const PLL_USB: u32 = 1 << 13;
-    pub const PWM: u32 = 1 << 14;
-    pub const TIMER: u32 = 1 << 21;
-    pub const UART0: u32 = 1 << 22;
-    pub const UART1: u32 = 1 << 23;
-    pub const USBCTRL: u32 = 1 << 24;
-    pub const ALL: u32 = 0x01ff_ffff;
-}
 
 /// IRQ numbers (datasheet 2.3.2).
 mod irq {
@@ -182,7 +168,7 @@ impl Bus {
             pwm: Pwm::default(),
             usb: Usb::default(),
             usb_host: UsbHost::default(),
-            resets: reset::ALL,
+            resets: reset::ALL & !reset::BY_ROM,
             resets_wdsel: 0,
             psm_off: 0,
             psm_wdsel: 0,
@@ -199,7 +185,7 @@ impl Bus {
     /// Everything back to its reset state but what survives: memories, scratch words, what is attached outside.
     pub fn reset(&mut self, cause: ResetCause) {
         self.apply_resets(reset::ALL);
-        self.resets = reset::ALL;
+        self.resets = reset::ALL & !reset::BY_ROM;
         self.resets_wdsel = 0;
         self.psm_off = 0;
         self.psm_wdsel = 0;
