@@ -9,6 +9,7 @@
 
 pub mod bus;
 mod clocks;
+mod cycles;
 mod dma;
 pub mod flash;
 pub mod pins;
@@ -32,10 +33,6 @@ use rp2040_emu::core::CoreBus;
 const SLICE: u64 = 64;
 /// Most cycles a slice lasts while both cores sleep.
 const IDLE_SLICE: u64 = 1 << 20;
-/// Cycles of exception entry (Cortex-M0+ TRM: 15 with zero wait states).
-const EXCEPTION_ENTRY: u64 = 15;
-/// What the CPU core shows as its address while it enters an exception.
-const STACKING: u32 = 0xffff_fffe;
 /// boot2: the first 256 bytes of flash run from the top of SRAM (datasheet 2.8.1.3.1).
 const BOOT2: usize = 256;
 const BOOT2_AT: u32 = 0x2004_1f00;
@@ -257,7 +254,7 @@ impl Chip {
                     core.cpu.invalidate_decode_cache_entries(&stale);
                 }
             }
-            if self.cores[k].cpu.is_halted() && self.bus.active_pc == STACKING {
+            if self.cores[k].cpu.is_halted() && self.bus.active_pc == cycles::STACKING {
                 // Locked up: the HardFault vector leads nowhere. Only WFI may halt a core.
                 let pc = self.faulting_pc(k);
                 let fault = Fault::HardFault { core: k, pc };
@@ -291,8 +288,14 @@ impl Chip {
         let bus = &mut self.bus;
         while core.time < end {
             bus.core_time = core.time;
-            core.time += u64::from(core.cpu.step(bus).max(1));
+            let mut charged = core.cpu.step(bus).max(1);
+            let (at, after) = (bus.active_pc, core.cpu.regs.pc());
+            if cycles::in_doubt(charged, at, after) {
+                charged = cycles::corrected(charged, at, after, || bus.halfword(at));
+            }
+            core.time += u64::from(charged);
             if bus.attention || core.cpu.is_halted() {
+                core.time -= std::mem::take(&mut bus.single_cycle_accesses);
                 return;
             }
         }
@@ -444,7 +447,7 @@ impl Chip {
         core.cpu.regs.r[14] = 0xffff_fff1;
         core.cpu.regs.xpsr = core.cpu.regs.xpsr & !0x1ff | exception;
         core.cpu.regs.set_pc(vector & !1);
-        core.time += EXCEPTION_ENTRY;
+        core.time += u64::from(cycles::EXCEPTION_ENTRY);
         self.bus.ppb[k].mark_active(exception as u16);
         self.bus.nvic[k].clear_pending(irq);
     }

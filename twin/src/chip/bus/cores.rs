@@ -26,6 +26,12 @@ impl Bus {
         }
     }
 
+    /// An instruction's halfword, read without any effect.
+    pub fn halfword(&self, address: u32) -> u16 {
+        self.memory(address & !1, 2)
+            .map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]))
+    }
+
     /// A core reads memory: counts core 1's use of flash and remembers where code lies in SRAM.
     #[inline(always)]
     pub(super) fn core_memory<const SIZE: usize>(&mut self, address: u32) -> Option<[u8; SIZE]> {
@@ -75,6 +81,7 @@ impl Bus {
             }
         }
         self.attention = true;
+        self.single_cycle_accesses += u64::from(address >> 28 == 0xd);
         self.advance(self.core_time);
         let value = self.peripheral_read(address);
         self.update_lines();
@@ -92,6 +99,7 @@ impl Bus {
             }
         }
         self.attention = true;
+        self.single_cycle_accesses += u64::from(address >> 28 == 0xd);
         self.advance(self.core_time);
         if size == 4 {
             self.peripheral_write(address, value);

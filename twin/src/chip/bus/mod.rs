@@ -70,6 +70,8 @@ pub struct Bus {
     pub attention: bool,
     /// The last instruction was in ROM.
     pub rom_called: bool,
+    /// Accesses to the single-cycle I/O port in the last instruction: a load or store there costs 1, not 2 (Cortex-M0+ TRM, table 3.1).
+    pub single_cycle_accesses: u64,
     /// Instructions core 1 executed, and data it read, from flash since it was started by the program.
     pub core1_xip: u64,
     /// The address of the first of them.
@@ -137,6 +139,7 @@ impl Bus {
             active_pc: 0,
             attention: false,
             rom_called: false,
+            single_cycle_accesses: 0,
             core1_xip: 0,
             core1_xip_first: 0,
             ppb: [Ppb::new(), Ppb::new()],
