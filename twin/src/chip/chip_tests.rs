@@ -1,19 +1,12 @@
 //! The chip's own behaviour, seen from its registers: times worked out from the datasheet, and what must be refused.
 
+use super::Chip;
 use super::bus::{Fault, ResetCause};
-use super::flash::Flash;
-use super::{Chip, Halt};
+use super::test_chip::*;
 use rp2040_emu::core::CoreBus;
 
-const RESETS: u32 = 0x4000_c000;
-const CLK_REF_CTRL: u32 = 0x4000_8030;
-const CLK_SYS_CTRL: u32 = 0x4000_803c;
-const CLK_PERI_CTRL: u32 = 0x4000_8048;
-const XOSC_CTRL: u32 = 0x4002_4000;
-const PLL_SYS: u32 = 0x4002_8000;
 const UART0: u32 = 0x4003_4000;
 const TIMER: u32 = 0x4005_4000;
-const WATCHDOG: u32 = 0x4005_8000;
 const PSM_WDSEL: u32 = 0x4001_0008;
 const DMA: u32 = 0x5000_0000;
 const NVIC_ISER: u32 = 0xe000_e100;
@@ -21,49 +14,6 @@ const NVIC_ISPR: u32 = 0xe000_e200;
 const NVIC_IPR0: u32 = 0xe000_e400;
 const VTOR: u32 = 0xe000_ed08;
 const VECTORS: u32 = 0x2000_0000;
-const CODE: u32 = 0x2000_1000;
-const DATA: u32 = 0x2000_2000;
-const STACK: u32 = 0x2000_8000;
-
-/// A chip at 120 MHz, everything out of reset, a microsecond tick, both cores stopped or in `code`.
-fn chip(code: &[u16]) -> Chip {
-    let mut chip = Chip::new(Flash::new(1 << 20, [0; 8]));
-    // The flash is empty on purpose: no program but the test's.
-    assert_eq!(chip.bus.fault.take(), Some(Fault::Boot2));
-    for (register, value) in [
-        (XOSC_CTRL, 0x00fa_baa0),
-        (RESETS, 0),
-        // 12 MHz × 100 / 5 / 2.
-        (PLL_SYS, 1),
-        (PLL_SYS + 0x8, 100),
-        (PLL_SYS + 0xc, 5 << 16 | 2 << 12),
-        (PLL_SYS + 0x4, 0),
-        (CLK_REF_CTRL, 2),
-        (CLK_SYS_CTRL, 1),
-        (CLK_PERI_CTRL, 1 << 11),
-        (WATCHDOG + 0x2c, 12 | 1 << 9),
-    ] {
-        chip.bus.write32(register, value);
-    }
-    assert_eq!(chip.bus.sys_hz(), 120_000_000);
-    let bytes: Vec<u8> = code
-        .iter()
-        .flat_map(|halfword| halfword.to_le_bytes())
-        .collect();
-    chip.take_over(0, CODE, &bytes, DATA);
-    let regs = &mut chip.cores[0].cpu.regs;
-    regs.msp = STACK;
-    regs.r[13] = STACK;
-    chip
-}
-
-/// `b .`
-const FOREVER: [u16; 1] = [0xe7fe];
-
-fn run(chip: &mut Chip, cycles: u64) -> Result<(), Halt> {
-    let until = chip.now() + cycles;
-    chip.run_until(until)
-}
 
 #[test]
 fn a_uart_sends_a_byte_in_ten_bits_of_its_divisors() {

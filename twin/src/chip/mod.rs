@@ -12,6 +12,7 @@ mod clocks;
 mod cycles;
 mod dma;
 pub mod flash;
+pub mod i2c;
 pub mod pins;
 pub mod pio;
 mod profile;
@@ -466,6 +467,8 @@ fn boot2_crc(bytes: &[u8]) -> u32 {
     })
 }
 
+#[cfg(test)]
+mod test_chip;
 #[cfg(test)]
 #[path = "chip_tests.rs"]
 mod tests;

@@ -13,6 +13,7 @@
 mod blocks;
 mod cores;
 mod fault;
+mod lines;
 mod peripherals;
 mod ppb;
 mod registers;
@@ -27,7 +28,8 @@ use rp2040_emu::core::Nvic;
 use super::clocks::Clocks;
 use super::dma::Dma;
 use super::flash::Flash;
-use super::pins::{Drivers, Pins};
+use super::i2c::I2c;
+use super::pins::Pins;
 use super::pio::Pio;
 use super::pwm::Pwm;
 use super::sio::Sio;
@@ -53,6 +55,7 @@ mod irq {
     pub const IO_BANK0: u32 = 13;
     pub const SIO_PROC0: u32 = 15;
     pub const UART0: u32 = 20;
+    pub const I2C0: u32 = 23;
 }
 
 /// Memories, peripherals, and the state both cores share.
@@ -102,6 +105,7 @@ pub struct Bus {
     pub pio: [Pio; 2],
     pub dma: Dma,
     pub uart: [Uart; 2],
+    pub i2c: [I2c; 2],
     pub timer: Timer,
     pub watchdog: Watchdog,
     pub clocks: Clocks,
@@ -163,6 +167,7 @@ impl Bus {
             pio: [Pio::new(), Pio::new()],
             dma: Dma::default(),
             uart: [Uart::default(), Uart::default()],
+            i2c: [I2c::new(0), I2c::new(1)],
             timer: Timer::default(),
             watchdog: Watchdog::default(),
             clocks: Clocks::default(),
@@ -274,6 +279,8 @@ impl Bus {
             .min(self.watchdog.next_event())
             .min(self.uart[0].next_event())
             .min(self.uart[1].next_event())
+            .min(self.i2c[0].next_event())
+            .min(self.i2c[1].next_event())
             .min(self.usb_host.next_event())
             .min(self.dma_at)
     }
@@ -306,6 +313,7 @@ impl Bus {
                 let bound = limit.min(other);
                 limit = self.pio[first].run(bound, &mut self.pins);
                 visible = self.pio[first].take_visible();
+                self.now = self.now.max(limit);
                 if visible && self.pio[first].pad_oe != 0 {
                     self.resolve_pins();
                 }
@@ -343,6 +351,16 @@ impl Bus {
                 u.advance(now);
             }
         }
+        let mut lines_moved = false;
+        for i2c in &mut self.i2c {
+            if i2c.next_event() <= now {
+                i2c.advance(now);
+                lines_moved = true;
+            }
+        }
+        if lines_moved {
+            self.resolve_pins();
+        }
         if self.usb_host.next_event() <= now {
             let per_ms = self.sys_hz / 1000;
             self.usb_host.advance(&mut self.usb, now, per_ms);
@@ -376,6 +394,7 @@ impl Bus {
             }
             lines |= u32::from(self.dma.irq_line(block)) << (irq::DMA_0 + block as u32);
             lines |= u32::from(self.uart[block].irq_line()) << (irq::UART0 + block as u32);
+            lines |= u32::from(self.i2c[block].irq_line()) << (irq::I2C0 + block as u32);
         }
         std::array::from_fn(|core| {
             lines
@@ -407,16 +426,5 @@ impl Bus {
             || self.ppb[core].icsr & (1 << 28 | 1 << 26) != 0;
         // WFE with interrupts masked needs SEVONPEND, which no image uses; an enabled pending interrupt wakes it as WFI.
         interrupt || (self.wfe[core] && self.event[core])
-    }
-
-    // ---- pins --------------------------------------------------------------------------------------------------------------
-
-    fn resolve_pins(&mut self) {
-        let drivers = Drivers {
-            sio_out: self.sio.out,
-            sio_oe: self.sio.oe,
-            pio: [0, 1].map(|n| (self.pio[n].pad_out, self.pio[n].pad_oe)),
-        };
-        self.pins.resolve(&drivers);
     }
 }

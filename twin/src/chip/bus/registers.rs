@@ -42,6 +42,12 @@ impl Bus {
         if on(reset::UART1) {
             self.uart[1].reset();
         }
+        if on(reset::I2C0) {
+            self.i2c[0].reset();
+        }
+        if on(reset::I2C1) {
+            self.i2c[1].reset();
+        }
         if on(reset::USBCTRL) {
             self.usb = Usb::default();
         }
@@ -93,6 +99,12 @@ impl Bus {
                 0x4003_0000 if offset <= 4 => Some(if offset == 4 { 1 } else { self.storage[0] }),
                 0x4003_4000 => self.uart[0].read(offset, now),
                 0x4003_8000 => self.uart[1].read(offset, now),
+                0x4004_4000 | 0x4004_8000 => {
+                    let n = usize::from(base == 0x4004_8000);
+                    let value = self.i2c[n].read(offset, now);
+                    self.resolve_pins();
+                    value
+                }
                 0x4005_0000 => self.pwm.read(offset, now),
                 0x4005_4000 => self.timer.read(offset, now),
                 0x4005_8000 => self.watchdog.read(offset, now),
@@ -190,6 +202,12 @@ impl Bus {
             0x4003_0000 if offset == 0 => self.storage[0] = value,
             0x4003_4000 => return self.uart[0].write(offset, value, now),
             0x4003_8000 => return self.uart[1].write(offset, value, now),
+            0x4004_4000 | 0x4004_8000 => {
+                let n = usize::from(base == 0x4004_8000);
+                let ok = self.i2c[n].write(offset, value, now);
+                self.resolve_pins();
+                return ok;
+            }
             0x4005_0000 => {
                 let ok = self.pwm.write(offset, value, now);
                 self.apply_trigger_level();

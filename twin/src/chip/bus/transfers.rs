@@ -14,6 +14,8 @@ impl Bus {
             21 => self.uart[0].rx_ready(),
             22 => self.uart[1].tx_ready(),
             23 => self.uart[1].rx_ready(),
+            32 | 34 => self.i2c[(n - 32) / 2].tx_ready(),
+            33 | 35 => self.i2c[(n - 32) / 2].rx_ready(),
             0x3f => true,
             _ => false,
         }

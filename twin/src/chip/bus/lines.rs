@@ -1,0 +1,75 @@
+//! Pads, and the wires that several parties share: whoever moves a line, all others see it before time goes on.
+
+use super::Bus;
+use crate::chip::i2c::Instant;
+use crate::chip::pins::Drivers;
+use crate::chip::pins::functions::{self as f, i2c_pins};
+
+/// Rounds after which the parties on a line have settled: each can answer the other once (a device that acknowledges, a controller that
+/// sees it), and nothing answers an answer within a cycle.
+const ROUNDS: usize = 8;
+
+impl Bus {
+    /// A fault holds lines of the wire of I2C `n` low from now on.
+    pub fn hold_i2c(&mut self, n: usize, sda: bool, scl: bool) {
+        self.i2c[n].hold(sda, scl);
+        self.resolve_pins();
+        self.touched();
+    }
+
+    /// Recomputes all pads from what the peripherals drive, then lets everyone on a shared wire answer.
+    pub(super) fn resolve_pins(&mut self) {
+        self.drive_pins();
+        for _ in 0..ROUNDS {
+            if !self.settle_i2c(0) & !self.settle_i2c(1) {
+                return;
+            }
+        }
+    }
+
+    fn drive_pins(&mut self) {
+        let mut low = 0;
+        for n in 0..2 {
+            let (sda, scl) = self.i2c[n].drives_low();
+            if sda {
+                low |= i2c_pins(n, f::i2c::SDA);
+            }
+            if scl {
+                low |= i2c_pins(n, f::i2c::SCL);
+            }
+        }
+        self.pins.resolve(&Drivers {
+            sio: (self.sio.out, self.sio.oe),
+            pio: [0, 1].map(|n| (self.pio[n].pad_out, self.pio[n].pad_oe)),
+            i2c_low: low,
+            ..Drivers::default()
+        });
+    }
+
+    /// Shows I2C `n` its lines. True if it answered by moving one.
+    fn settle_i2c(&mut self, n: usize) -> bool {
+        if let Some((sda, scl)) = self.i2c[n].wire_pins() {
+            let levels = (self.pins.level(sda), self.pins.level(scl));
+            let now = Instant {
+                cycle: self.now,
+                time_ps: self.time_ps(),
+                sys_hz: self.sys_hz,
+            };
+            let (sda_low, scl_low) = self.i2c[n].on_wire(levels.0, levels.1, now);
+            let low = u32::from(sda_low) << sda | u32::from(scl_low) << scl;
+            // The wire sees its own doing before the controller reacts to it: two lines that move at once would hide a START.
+            if self.pins.open_drain(1 << sda | 1 << scl, low) {
+                return true;
+            }
+        }
+        let input = |signal| self.pins.peripheral_input(f::I2C, i2c_pins(n, signal));
+        let (sda, scl) = (input(f::i2c::SDA), input(f::i2c::SCL));
+        let before = self.i2c[n].drives_low();
+        self.i2c[n].on_lines(sda, scl, self.now);
+        let moved = self.i2c[n].drives_low() != before;
+        if moved {
+            self.drive_pins();
+        }
+        moved
+    }
+}

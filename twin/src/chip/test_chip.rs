@@ -1,0 +1,57 @@
+//! What the tests of the chip share: a chip that runs at 120 MHz, addresses, and steps.
+
+use super::bus::Fault;
+use super::flash::Flash;
+use super::{Chip, Halt};
+use rp2040_emu::core::CoreBus;
+
+pub const RESETS: u32 = 0x4000_c000;
+pub const CLK_REF_CTRL: u32 = 0x4000_8030;
+pub const CLK_SYS_CTRL: u32 = 0x4000_803c;
+pub const CLK_PERI_CTRL: u32 = 0x4000_8048;
+pub const XOSC_CTRL: u32 = 0x4002_4000;
+pub const PLL_SYS: u32 = 0x4002_8000;
+pub const WATCHDOG: u32 = 0x4005_8000;
+pub const CODE: u32 = 0x2000_1000;
+pub const DATA: u32 = 0x2000_2000;
+pub const STACK: u32 = 0x2000_8000;
+
+/// A chip at 120 MHz, everything out of reset, a microsecond tick, both cores stopped or in `code`.
+pub fn chip(code: &[u16]) -> Chip {
+    let mut chip = Chip::new(Flash::new(1 << 20, [0; 8]));
+    // The flash is empty on purpose: no program but the test's.
+    assert_eq!(chip.bus.fault.take(), Some(Fault::Boot2));
+    for (register, value) in [
+        (XOSC_CTRL, 0x00fa_baa0),
+        (RESETS, 0),
+        // 12 MHz × 100 / 5 / 2.
+        (PLL_SYS, 1),
+        (PLL_SYS + 0x8, 100),
+        (PLL_SYS + 0xc, 5 << 16 | 2 << 12),
+        (PLL_SYS + 0x4, 0),
+        (CLK_REF_CTRL, 2),
+        (CLK_SYS_CTRL, 1),
+        (CLK_PERI_CTRL, 1 << 11),
+        (WATCHDOG + 0x2c, 12 | 1 << 9),
+    ] {
+        chip.bus.write32(register, value);
+    }
+    assert_eq!(chip.bus.sys_hz(), 120_000_000);
+    let bytes: Vec<u8> = code
+        .iter()
+        .flat_map(|halfword| halfword.to_le_bytes())
+        .collect();
+    chip.take_over(0, CODE, &bytes, DATA);
+    let regs = &mut chip.cores[0].cpu.regs;
+    regs.msp = STACK;
+    regs.r[13] = STACK;
+    chip
+}
+
+/// `b .`
+pub const FOREVER: [u16; 1] = [0xe7fe];
+
+pub fn run(chip: &mut Chip, cycles: u64) -> Result<(), Halt> {
+    let until = chip.now() + cycles;
+    chip.run_until(until)
+}
