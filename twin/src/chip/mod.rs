@@ -9,10 +9,12 @@
 
 pub mod bus;
 mod clocks;
+pub mod crystal;
 mod cycles;
 mod dma;
 pub mod flash;
 pub mod i2c;
+pub mod outside;
 pub mod pins;
 pub mod pio;
 mod profile;

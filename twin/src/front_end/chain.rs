@@ -4,6 +4,7 @@
 
 use super::Edge;
 use super::detector::{Detector, millivolt};
+use super::level_history::LevelHistory;
 use super::parameters::FrontEnd;
 use super::slicer::Threshold;
 
@@ -18,6 +19,7 @@ pub struct Chain {
     now_ps: u64,
     /// The level (dBm) at which nothing moves any more, when that is so.
     settled_at: Option<f32>,
+    history: LevelHistory,
 }
 
 impl Chain {
@@ -33,6 +35,7 @@ impl Chain {
             above_mv: -1.0,
             now_ps: 0,
             settled_at: None,
+            history: LevelHistory::new(step_ps),
         }
     }
 
@@ -46,11 +49,17 @@ impl Chain {
         self.settled_at = None;
     }
 
+    /// The detector's output at an instant that was fed lately, mV.
+    pub fn detector_mv(&self, at_ps: u64) -> Option<f32> {
+        self.history.detector_mv(at_ps)
+    }
+
     /// Feeds levels at the antenna (dBm; they are overwritten) and appends the edges.
     ///
     /// Stage after stage over the whole block: each is then a short loop that the host runs fast.
     pub fn feed(&mut self, dbm: &mut [f32], edges: &mut Vec<Edge>) {
         if self.settled(dbm) {
+            self.history.stands(&self.detector, self.now_ps);
             self.now_ps += self.step_ps * dbm.len() as u64;
             return;
         }
@@ -60,6 +69,7 @@ impl Chain {
             .copied()
             .filter(|first| dbm.iter().all(|dbm| dbm == first));
         dbm.iter_mut().for_each(|level| *level = millivolt(*level));
+        self.history.note(&self.detector, self.now_ps, dbm);
         self.threshold.compare(&mut self.detector, dbm);
         let changed = edges.len();
         for part in dbm.chunks(64) {

@@ -12,9 +12,11 @@
 pub mod chain;
 pub mod decibel;
 pub mod detector;
+mod level_history;
 pub mod parameters;
 pub mod player;
 pub mod slicer;
+pub mod trigger_level;
 
 pub use parameters::{FrontEnd, Slicer};
 pub use player::{Level, Player};
@@ -38,6 +40,11 @@ pub trait PulseSource {
 
     /// Sets the threshold voltage that the firmware's PWM makes; acts on what was not produced yet.
     fn set_trigger_level_mv(&mut self, mv: f64);
+
+    /// The detector's output at an instant of what was produced lately, mV; `None` where it is not known any more or not yet.
+    fn detector_mv(&self, _at_ps: u64) -> Option<f32> {
+        None
+    }
 }
 
 /// The first tick of the 120 MHz clock at which an edge is seen: its time in ticks, rounded up.

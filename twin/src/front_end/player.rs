@@ -63,4 +63,8 @@ impl<L: Level> PulseSource for Player<L> {
     fn set_trigger_level_mv(&mut self, mv: f64) {
         self.chain.set_trigger_level_mv(mv);
     }
+
+    fn detector_mv(&self, at_ps: u64) -> Option<f32> {
+        self.chain.detector_mv(at_ps)
+    }
 }

@@ -18,17 +18,21 @@ mod peripherals;
 mod ppb;
 mod registers;
 mod transfers;
+mod world;
 
 use blocks::reset;
 pub use fault::{Fault, ResetCause};
+pub use world::TriggerNet;
 
 use rp2040_emu::bus::ppb::Ppb;
 use rp2040_emu::core::Nvic;
 
 use super::clocks::Clocks;
+use super::crystal::Crystal;
 use super::dma::Dma;
 use super::flash::Flash;
 use super::i2c::I2c;
+use super::outside::Surroundings;
 use super::pins::Pins;
 use super::pio::Pio;
 use super::pwm::Pwm;
@@ -124,11 +128,13 @@ pub struct Bus {
     /// Picoseconds at cycle `since`, when the system clock last changed.
     time_ps: u128,
     since: u64,
+    /// The chip's time against true time.
+    pub crystal: Crystal,
+    /// What is attached and acts by itself.
+    pub surroundings: Surroundings,
+    /// The board's trigger levels; the first is the comparator's.
+    pub trigger_nets: Vec<TriggerNet>,
 }
-
-/// Pin of the trigger level's PWM (board table), and the supply its duty is a share of.
-const TRIGGER_LEVEL_GPIO: usize = 25;
-const SUPPLY_MV: f64 = 3300.0;
 
 impl Bus {
     /// A chip with `flash`, at power-on.
@@ -185,6 +191,9 @@ impl Bus {
             sys_hz: 0,
             time_ps: 0,
             since: 0,
+            crystal: Crystal::default(),
+            surroundings: Surroundings::new(),
+            trigger_nets: Vec::new(),
         };
         bus.clocks_changed();
         bus
@@ -236,7 +245,7 @@ impl Bus {
 
     // ---- time --------------------------------------------------------------------------------------------------------------
 
-    /// Time since power-on in picoseconds.
+    /// Time since power-on in picoseconds as the chip counts it: by its own crystal.
     pub fn time_ps(&self) -> u128 {
         match self.sys_hz {
             0 => self.time_ps,
@@ -247,19 +256,12 @@ impl Bus {
         }
     }
 
-    /// Hands the threshold that the PWM makes to the front end.
-    pub fn apply_trigger_level(&mut self) {
-        if self.pins.function(TRIGGER_LEVEL_GPIO) == 4
-            && let Some(duty) = self.pwm.duty(TRIGGER_LEVEL_GPIO)
-        {
-            self.pins.set_trigger_level_mv(duty * SUPPLY_MV);
-        }
-    }
-
     fn clocks_changed(&mut self) {
         self.time_ps = self.time_ps();
         self.since = self.now;
         self.sys_hz = self.clocks.sys_hz();
+        self.pins.clock_changed(self.now, self.sys_hz);
+        self.time_surroundings();
         if self.sys_hz == 0 {
             self.fault.get_or_insert(Fault::ClockStopped);
             return;
@@ -282,6 +284,8 @@ impl Bus {
             .min(self.i2c[0].next_event())
             .min(self.i2c[1].next_event())
             .min(self.usb_host.next_event())
+            .min(self.surroundings.next)
+            .min(self.pins.next_change())
             .min(self.dma_at)
     }
 
@@ -343,6 +347,12 @@ impl Bus {
     /// Everything due at `now`, then the interrupt lines.
     fn fire(&mut self) {
         let now = self.now;
+        if self.surroundings.next <= now {
+            self.run_surroundings();
+        }
+        if self.pins.next_change() <= now {
+            self.pins.synced(now, 0);
+        }
         if self.timer.next_event() <= now {
             self.timer.advance(now);
         }

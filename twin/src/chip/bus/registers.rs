@@ -181,6 +181,7 @@ impl Bus {
             0x4001_4000 => {
                 let ok = self.pins.write_io(offset, value);
                 self.resolve_pins();
+                self.apply_trigger_level();
                 return ok;
             }
             0x4001_c000 => {

@@ -18,16 +18,21 @@
 //! A pin held low by an open-drain device is low whatever drives it. A pad without a pull and without anything that drives it reads low.
 //! Slew rate, Schmitt trigger and drive strength are stored without effect; the pads of the debug port too.
 //!
-//! PULSES is the one fast input. Its edges come from a [`PulseSource`] as picoseconds of playback and are turned into system cycles by
-//! [`edge_tick`]; a reader at cycle `c` sees the level two cycles earlier, behind the input synchroniser (datasheet 3.5.6.3). Every other
-//! pin changes only between the slices in which the chip runs. A pin that drives itself is read back without the synchroniser's delay.
+//! PULSES is the one fast input: its edges come from `playback` with their cycles. A reader at cycle `c` sees the level two cycles
+//! earlier, behind the input synchroniser (datasheet 3.5.6.3); so it does with what is attached and changes a level at a cycle of its own
+//! ([`Pins::change_at`]). Every other pin changes only between the slices in which the chip runs. A pin that drives itself is read back
+//! without the synchroniser's delay.
 
 mod choices;
 pub mod functions;
 mod playback;
 mod registers;
 
+use std::collections::VecDeque;
+
+use super::crystal::Crystal;
 use crate::front_end::PulseSource;
+use crate::front_end::trigger_level::TriggerLevel;
 use choices::Choices;
 use functions as f;
 use playback::Playback;
@@ -70,8 +75,13 @@ pub struct Pins {
     inte: [[u32; 4]; LISTENERS],
     intf: [[u32; 4]; LISTENERS],
     playback: Option<Playback>,
-    /// Cycle from which the next playback edge is visible behind the synchroniser.
+    /// Levels that change at a cycle: cycle, pin, level.
+    changes: VecDeque<(u64, u32, bool)>,
+    /// Cycle from which the next edge of either is visible behind the synchroniser.
     next_visible: u64,
+    /// System clock, and the threshold behind its RC.
+    hz: u64,
+    trigger_level: TriggerLevel,
 }
 
 /// What the peripherals offer to the multiplexer: levels and output enables, spread over the pins that can carry them.
@@ -92,6 +102,7 @@ impl Pins {
     pub fn new() -> Self {
         let mut pins = Self {
             next_visible: u64::MAX,
+            hz: crate::board::TICK_HZ,
             ..Self::default()
         };
         pins.reset();
@@ -104,12 +115,21 @@ impl Pins {
 
     // ---- outside -----------------------------------------------------------------------------------------------------------
 
-    /// Plays `source` into `pin`, its time zero at cycle `start`. Replaces what played before.
-    pub fn play(&mut self, source: Box<dyn PulseSource + Send>, pin: u32, start: u64) {
+    /// Plays `source` into `pin`, its time zero at cycle `start`, which is nominal time `start_ps`. Replaces what played before.
+    pub fn play(
+        &mut self,
+        source: Box<dyn PulseSource + Send>,
+        pin: u32,
+        start: u64,
+        start_ps: u128,
+        crystal: &Crystal,
+    ) {
         self.driven |= 1 << pin;
         self.external &= !(1 << pin);
-        self.playback = Some(Playback::new(source, pin, start));
-        self.next_visible = u64::MAX;
+        let mut playback = Playback::new(source, pin, start, start_ps, crystal.clone());
+        playback.clock_changed(start, self.hz);
+        self.playback = Some(playback);
+        self.note_next_visible();
         self.resolve_levels();
     }
 
@@ -118,18 +138,61 @@ impl Pins {
         self.playback.as_ref().is_none_or(Playback::finished)
     }
 
-    /// Hands the trigger level to the front end, millivolts.
-    pub fn set_trigger_level_mv(&mut self, millivolts: f64) {
-        if let Some(p) = &mut self.playback {
-            p.source.set_trigger_level_mv(millivolts);
+    /// The trigger level as it goes on from now; the front end follows it from what it has not produced yet.
+    pub fn set_trigger_level(&mut self, level: TriggerLevel) {
+        self.trigger_level = level;
+    }
+
+    /// The detector's output at cycle `now`, mV, while something plays.
+    pub fn detector_mv(&self, now: u64) -> Option<f32> {
+        self.playback.as_ref()?.detector_mv(now)
+    }
+
+    /// The system clock has another rate from cycle `now`.
+    pub fn clock_changed(&mut self, now: u64, hz: u64) {
+        self.hz = hz;
+        if let Some(playback) = &mut self.playback {
+            playback.clock_changed(now, hz);
         }
+        self.note_next_visible();
+    }
+
+    /// Time passes without cycles.
+    pub fn skip_ps(&mut self, now: u64, ps: u64) {
+        if let Some(playback) = &mut self.playback {
+            playback.skip_ps(now, ps);
+        }
+        self.note_next_visible();
     }
 
     /// Makes sure that all edges up to cycle `until` are at hand.
     pub fn look_ahead(&mut self, until: u64) {
-        let Some(p) = &mut self.playback else { return };
-        p.look_ahead(until);
-        self.next_visible = p.next_visible();
+        if let Some(playback) = &mut self.playback
+            && playback.lacks(until)
+        {
+            playback.look_ahead(until, &self.trigger_level);
+            self.note_next_visible();
+        }
+    }
+
+    /// Something outside changes the level of `pin` at cycle `at`, which is not before the last such cycle.
+    pub fn change_at(&mut self, pin: u32, level: bool, at: u64) {
+        self.driven |= 1 << pin;
+        self.changes.push_back((at, pin, level));
+        self.note_next_visible();
+    }
+
+    /// Cycle at which the next change made by something outside becomes visible.
+    pub fn next_change(&self) -> u64 {
+        self.changes
+            .front()
+            .map_or(u64::MAX, |change| change.0 + SYNC_CYCLES)
+    }
+
+    fn note_next_visible(&mut self) {
+        let playback = self.playback.as_ref().and_then(Playback::next_edge);
+        let edge = playback.map_or(u64::MAX, |(at, _)| at.saturating_add(SYNC_CYCLES));
+        self.next_visible = edge.min(self.next_change());
     }
 
     /// Sets an input from outside the chip.
@@ -163,8 +226,8 @@ impl Pins {
 
     // ---- levels ------------------------------------------------------------------------------------------------------------
 
-    /// Input levels as a reader at cycle `now` sees them. Pins in `bypass` skip the synchroniser; for the playback pin that is exact only
-    /// between its edges.
+    /// Input levels as a reader at cycle `now` sees them. Pins in `bypass` skip the synchroniser; for a pin with edges of its own cycles
+    /// that is exact only between them.
     #[inline]
     pub fn synced(&mut self, now: u64, bypass: u32) -> u32 {
         if now >= self.next_visible || bypass != 0 {
@@ -175,27 +238,44 @@ impl Pins {
 
     #[cold]
     fn pass_edges(&mut self, now: u64, bypass: u32) {
-        let Some(p) = &mut self.playback else { return };
-        let bit = 1 << p.pin;
-        let delay = if bypass & bit != 0 { 0 } else { SYNC_CYCLES };
-        let before = self.external;
-        for &(at, level) in &p.edges[p.played..] {
-            if at + delay > now {
+        let delay = |pin: u32| match bypass & (1 << pin) {
+            0 => SYNC_CYCLES,
+            _ => 0,
+        };
+        while let Some(&(at, pin, level)) = self.changes.front() {
+            if at + delay(pin) > now {
                 break;
             }
-            p.played += 1;
-            if level != (self.external & bit != 0) {
-                self.external ^= bit;
-                let sensed = self.chosen.irq.apply(self.external);
-                let event = if sensed & bit != 0 { 8 } else { 4 };
-                self.intr[p.pin as usize / 8] |= event << (4 * (p.pin % 8));
+            self.changes.pop_front();
+            self.pass_edge(pin, level);
+        }
+        while let Some(playback) = &mut self.playback {
+            let pin = playback.pin;
+            match playback.next_edge() {
+                Some((at, level)) if at.saturating_add(delay(pin)) <= now => {
+                    playback.pass_edge();
+                    self.pass_edge(pin, level);
+                }
+                _ => break,
             }
         }
-        self.next_visible = p.next_visible();
-        if self.external != before {
-            let open = bit & !self.oe;
-            self.level = self.level & !open | self.external & open;
-            self.seen = self.visible();
+        self.note_next_visible();
+    }
+
+    fn pass_edge(&mut self, pin: u32, level: bool) {
+        let bit = 1 << pin;
+        if level != (self.external & bit != 0) {
+            self.external ^= bit;
+            if (self.oe | self.held_low) & bit == 0 {
+                let before = self.chosen.irq.apply(self.seen);
+                self.level = self.level & !bit | self.external & bit;
+                self.seen = self.visible();
+                let sensed = self.chosen.irq.apply(self.seen);
+                if (before ^ sensed) & bit != 0 {
+                    let event = if sensed & bit != 0 { 8 } else { 4 };
+                    self.intr[pin as usize / 8] |= event << (4 * (pin % 8));
+                }
+            }
         }
     }
 

@@ -1,26 +1,22 @@
-//! The board `adsbee_1090` around the chip: flash, radio on PULSES, a USB host on CONSOLE, far ends on the UARTs.
-//!
-//! | net | GPIO | here |
-//! |---|---|---|
-//! | PULSES | 19 | edges from the front end |
-//! | trigger level | 25 | PWM duty of 3300 mV, without the RC's delay |
-//! | COMMS_UART | 4, 5 | UART1 |
-//! | GNSS_UART | 0, 1 | UART0 |
-//! | CONSOLE | USB | CDC-ACM host |
+//! A board around the chip: flash, radio on PULSES, a USB host on CONSOLE, far ends on the UARTs. The nets are in [`kind`].
 //!
 //! Not modelled yet: EEPROM, ADC inputs, GNSS receiver, ESP32.
 
+pub mod kind;
+
 use std::path::Path;
 
+use kind::{ADSBEE_1090, Kind};
+
+use crate::chip::bus::TriggerNet;
+use crate::chip::crystal::{Crystal, Deviation};
 use crate::chip::flash::Flash;
 use crate::chip::{Chip, Halt};
 use crate::front_end::PulseSource;
 use crate::image;
 
-const PULSES: u32 = 19;
-const LED: u32 = 15;
-/// Flash of the smallest supported board (2 MiB, BOOT_NOTES flash map).
-const FLASH_BYTES: usize = 2 << 20;
+/// The flash's unique id, where nobody names another.
+const UNIQUE_ID: [u8; 8] = *b"SQUITTER";
 /// Cycles of one capture word: 32 samples of 15 cycles.
 const WORD_CYCLES: u64 = 480;
 /// Cycles between a pin and the sampler that reads it.
@@ -29,6 +25,8 @@ const SYNC_CYCLES: u64 = 2;
 pub const TICK_HZ: u64 = 120_000_000;
 /// How long an image may take to start capture, and a host to open the port.
 const START_SECONDS: u64 = 4;
+/// How long a trigger level may take to settle behind its RC, ms: fourteen time constants.
+const SETTLE_MS: u64 = 140;
 
 /// Why the board did not do what was asked.
 #[derive(Debug, thiserror::Error)]
@@ -45,9 +43,26 @@ pub enum Error {
     NoConsole { comms: String, usb: String },
 }
 
+/// What a board is built from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setup {
+    pub kind: Kind,
+    pub crystal: Deviation,
+}
+
+impl Default for Setup {
+    fn default() -> Self {
+        Self {
+            kind: ADSBEE_1090,
+            crystal: Deviation::default(),
+        }
+    }
+}
+
 /// A powered board.
 pub struct Board {
     pub chip: Chip,
+    pub kind: Kind,
     /// Cycle of the first sample of the playback, once it runs.
     playback: Option<Playback>,
 }
@@ -62,23 +77,35 @@ pub struct Playback {
 }
 
 impl Board {
-    /// Flashes `uf2` and switches the power on.
+    /// Flashes `uf2` and switches the power of an `adsbee_1090` on.
     pub fn power_on(uf2: &Path) -> Result<Self, Error> {
-        let mut flash = Flash::new(FLASH_BYTES, *b"SQUITTER");
+        let mut flash = Flash::new(ADSBEE_1090.flash_bytes, UNIQUE_ID);
         image::flash_uf2(uf2, &mut flash)?;
         Ok(Self::with_flash(flash))
     }
 
-    /// Switches the power on with these flash contents.
+    /// Switches the power of an `adsbee_1090` on with these flash contents.
     pub fn with_flash(flash: Flash) -> Self {
+        Self::new(flash, &Setup::default())
+    }
+
+    /// Builds a board and switches the power on.
+    pub fn new(flash: Flash, setup: &Setup) -> Self {
         let mut chip = Chip::new(flash);
+        let kind = setup.kind;
+        let bus = &mut chip.bus;
+        bus.crystal = Crystal::new(setup.crystal);
+        let nets = kind.trigger_levels.iter();
+        bus.trigger_nets = nets.map(|net| TriggerNet::new(net.pwm)).collect();
         // UART lines idle high.
-        for rx in [1, 5] {
-            chip.bus.pins.drive(rx, true);
+        bus.pins.drive(kind.comms_rx, true);
+        if let Some(gnss) = kind.gnss {
+            bus.pins.drive(gnss.rx, true);
         }
-        chip.bus.pins.drive(PULSES, false);
+        bus.pins.drive(kind.pulses, false);
         Self {
             chip,
+            kind,
             playback: None,
         }
     }
@@ -148,14 +175,21 @@ impl Board {
     }
 
     /// Starts playback of `source`: its time zero falls on the first sample of the next capture word, so that a native run of the same
-    /// source with phase zero samples the very same instants.
+    /// source with phase zero samples the very same instants. The trigger level has settled by then, as on a board that is on.
     pub fn play(&mut self, source: Box<dyn PulseSource + Send>) -> Result<Playback, Error> {
         self.wait_for_capture()?;
+        for _ in 0..SETTLE_MS {
+            if self.chip.bus.trigger_levels_settled() {
+                break;
+            }
+            self.run_ms(1)?;
+        }
         let first = self.chip.bus.pio[0].enabled_at[0] + 1;
         let words = (self.chip.now() - first) / WORD_CYCLES + 2;
         let start = first + words * WORD_CYCLES;
-        self.chip.bus.pins.play(source, PULSES, start - SYNC_CYCLES);
-        self.chip.bus.apply_trigger_level();
+        self.chip
+            .bus
+            .play(source, self.kind.pulses, start - SYNC_CYCLES);
         let playback = Playback {
             start_cycle: start,
             start_tick: words * WORD_CYCLES,
@@ -205,7 +239,7 @@ impl Board {
 
     /// The status LED.
     pub fn led(&self) -> bool {
-        self.chip.bus.pins.level(LED)
+        self.chip.bus.pins.level(self.kind.led)
     }
 }
 

@@ -1,0 +1,150 @@
+//! Time outside the chip: true time against cycles, what is attached and acts by itself, the analog nets.
+
+use super::Bus;
+use crate::chip::outside::{Outside, Wires};
+use crate::front_end::PulseSource;
+use crate::front_end::parameters::LEAST_MILLIVOLT;
+use crate::front_end::trigger_level::{SUPPLY_MV, TriggerLevel};
+use crate::source::random::Random;
+
+const PS_A_SECOND: u128 = 1_000_000_000_000;
+/// Noise of the RSSI net at its ADC input, mV rms (assumed: two steps of the ADC).
+const RSSI_NOISE_MV: f64 = 1.6;
+
+/// A trigger level: the pin whose PWM makes it and the voltage behind its RC.
+#[derive(Clone, Copy, Debug)]
+pub struct TriggerNet {
+    pub gpio: usize,
+    pub level: TriggerLevel,
+}
+
+impl TriggerNet {
+    pub fn new(gpio: usize) -> Self {
+        Self {
+            gpio,
+            level: TriggerLevel::default(),
+        }
+    }
+}
+
+impl Bus {
+    /// True time since power-on in picoseconds: the instant of the present cycle.
+    pub fn true_ps(&mut self) -> u128 {
+        let nominal = self.time_ps();
+        self.crystal.true_ps(nominal)
+    }
+
+    /// The first cycle at or after a true instant, at the present rate of the system clock; the present one for the past.
+    pub fn cycle_at(&mut self, true_ps: u128) -> u64 {
+        let count = self.crystal.count_at_or_after(true_ps);
+        let ahead = count.saturating_sub(self.time_ps);
+        let cycles = (ahead * u128::from(self.sys_hz)).div_ceil(PS_A_SECOND);
+        match u64::try_from(cycles) {
+            Ok(cycles) if self.sys_hz != 0 => self.since.saturating_add(cycles).max(self.now),
+            _ => u64::MAX,
+        }
+    }
+
+    /// Attaches something that acts by itself.
+    pub fn attach(&mut self, device: Box<dyn Outside>) {
+        self.surroundings.devices.push((device, u64::MAX));
+        self.time_surroundings();
+    }
+
+    /// Everything outside is told of the supply.
+    pub fn power_surroundings(&mut self, on: bool) {
+        let now_ps = self.true_ps();
+        for (device, _) in &mut self.surroundings.devices {
+            device.power(on, now_ps);
+        }
+        self.time_surroundings();
+    }
+
+    /// Works out anew at which cycle each thing outside acts: the clock has changed, or one of them was set otherwise.
+    pub fn time_surroundings(&mut self) {
+        let mut devices = std::mem::take(&mut self.surroundings.devices);
+        for (device, at) in &mut devices {
+            *at = device.next_ps().map_or(u64::MAX, |ps| self.cycle_at(ps));
+        }
+        self.surroundings.next = devices.iter().map(|d| d.1).min().unwrap_or(u64::MAX);
+        self.surroundings.devices = devices;
+        self.quiet_until = 0;
+    }
+
+    /// Lets everything outside act that is due.
+    #[cold]
+    pub(super) fn run_surroundings(&mut self) {
+        let now = self.now;
+        let levels = self.pins.levels();
+        let mut devices = std::mem::take(&mut self.surroundings.devices);
+        for (device, at) in &mut devices {
+            while *at <= now {
+                let Some(ps) = device.next_ps() else {
+                    *at = u64::MAX;
+                    break;
+                };
+                let mut wires = Wires::new(ps, levels);
+                device.act(&mut wires);
+                for (pin, level) in wires.pins {
+                    self.pins.change_at(pin, level, *at);
+                }
+                for (uart, bytes) in wires.bytes {
+                    self.uart[uart].send(&bytes, now);
+                }
+                *at = device.next_ps().map_or(u64::MAX, |ps| self.cycle_at(ps));
+            }
+        }
+        self.surroundings.next = devices.iter().map(|d| d.1).min().unwrap_or(u64::MAX);
+        self.surroundings.devices = devices;
+    }
+
+    /// Time passes without a cycle: the supply is off.
+    pub fn skip_ps(&mut self, ps: u128) {
+        self.time_ps = self.time_ps() + ps;
+        self.since = self.now;
+        self.pins.skip_ps(self.now, ps as u64);
+        self.clocks_changed();
+    }
+
+    /// Plays `source` into `pin`, its time zero at cycle `start`, which lies ahead.
+    pub fn play(&mut self, source: Box<dyn PulseSource + Send>, pin: u32, start: u64) {
+        let hz = u128::from(self.sys_hz.max(1));
+        let start_ps = self.time_ps + u128::from(start - self.since) * PS_A_SECOND / hz;
+        self.apply_trigger_level();
+        self.pins.play(source, pin, start, start_ps, &self.crystal);
+    }
+
+    // ---- analog nets -------------------------------------------------------------------------------------------------------
+
+    /// Follows the PWM of every trigger level, and tells the comparator of the first.
+    pub fn apply_trigger_level(&mut self) {
+        let now_ps = self.time_ps();
+        for net in &mut self.trigger_nets {
+            let driven = self.pins.function(net.gpio) == 4;
+            let duty = self.pwm.duty(net.gpio).filter(|_| driven);
+            net.level.aim(duty.unwrap_or(0.0) * SUPPLY_MV, now_ps);
+        }
+        if let Some(net) = self.trigger_nets.first() {
+            self.pins.set_trigger_level(net.level);
+        }
+    }
+
+    /// Every trigger level stands where its PWM wants it.
+    pub fn trigger_levels_settled(&self) -> bool {
+        let now_ps = self.time_ps();
+        self.trigger_nets.iter().all(|n| n.level.settled(now_ps))
+    }
+
+    /// The voltage of a trigger level now, mV.
+    pub fn trigger_level_mv(&self, which: usize) -> Option<f64> {
+        let now_ps = self.time_ps();
+        self.trigger_nets.get(which).map(|n| n.level.mv(now_ps))
+    }
+
+    /// The voltage of the RSSI net at this instant, mV: the detector's level and a little noise of its own.
+    pub fn rssi_mv(&mut self) -> f64 {
+        let level = self.pins.detector_mv(self.now).unwrap_or(LEAST_MILLIVOLT);
+        let noise = Random::new(self.now ^ 0x5251).normal() * RSSI_NOISE_MV;
+        (f64::from(level) + noise).clamp(0.0, SUPPLY_MV)
+    }
+}
