@@ -86,22 +86,24 @@ pub fn object(
         Body::AirAir {
             on_ground,
             altitude,
+            ..
         } => {
             put("on_ground", json!(on_ground));
             if let Some(a) = altitude {
                 put("altitude", json!(a.0));
             }
         }
-        Body::AltitudeReply { altitude, .. } => {
-            if let Some(a) = altitude {
-                put("altitude", json!(a.0));
-            }
+        Body::AltitudeReply {
+            altitude: Some(altitude),
+            ..
+        } => {
+            put("altitude", json!(altitude.0));
         }
         Body::IdentityReply { squawk, .. } => {
             put("squawk", digits(squawk));
         }
-        Body::AllCallReply { .. } | Body::NotDecoded => {}
         Body::ExtendedSquitter { me, .. } => me_fields(&me, &mut put),
+        _ => {}
     }
     if let Some((aircraft, now_ms)) = aircraft
         && let Some(place) = aircraft.position(now_ms)
@@ -214,6 +216,7 @@ fn me_fields(me: &Me, put: &mut impl FnMut(&str, Value)) {
         }
         Me::TargetState(state) => target_fields(state, put),
         Me::OperationalStatus(status) => operational_fields(status, put),
+        Me::NoPosition(_) | Me::TisbVelocity(_) => put("typecode", json!(me.type_code())),
         Me::NotDecoded { type_code, .. } => put("typecode", json!(type_code)),
     }
 }

@@ -15,9 +15,9 @@
 //! | 6 | ADS-R | ICAO, or not where IMF = 1 |
 //! | 7 | reserved | not ICAO |
 //!
-//! Source: the CF and IMF tables of DO-260B and ICAO Doc 9871.
+//! DF19 whose AF is 0 names an ICAO address. Source: the CF and IMF tables of DO-260B and ICAO Doc 9871.
 
-use crate::frame::Frame;
+use crate::frame::{Frame, MeBits};
 
 /// A 24-bit aircraft address of ICAO.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -45,7 +45,7 @@ impl Address {
         matches!(self, Address::Icao(_))
     }
 
-    /// The address in bits 9-32 of a DF11, DF17 or DF18 frame.
+    /// The address in bits 9-32 of a DF11, 17, 18 or 19 frame.
     pub(crate) fn of_aa(frame: &Frame) -> Address {
         let aa = frame.bits(9, 32);
         if frame.df() == crate::Df::NON_TRANSPONDER && !cf_names_icao(frame) {
@@ -66,14 +66,21 @@ fn cf_names_icao(frame: &Frame) -> bool {
     }
 }
 
-/// The IMF bit of a CF 2 or 6 frame; each ME type keeps it elsewhere, identification has none.
+/// The IMF bit of a CF 2 or 6 frame.
 fn imf(frame: &Frame) -> bool {
     let me = frame.me();
+    imf_place(me).is_some_and(|place| me.bit(place))
+}
+
+/// Where the ME types keep IMF when a ground station sends them; identification has none. Before version 2 some of these bits were
+/// reserved, so they read 0 there, which is ICAO.
+pub(crate) const fn imf_place(me: MeBits) -> Option<usize> {
     match me.bits(1, 5) {
-        0 | 9..=18 | 20..=22 => me.bit(8),
-        5..=8 => me.bit(21),
-        19 => me.bit(9),
-        31 => me.bit(56),
-        _ => false,
+        0 | 9..=18 | 20..=22 => Some(8),
+        5..=8 => Some(21),
+        19 => Some(9),
+        29 => Some(51),
+        28 | 31 => Some(56),
+        _ => None,
     }
 }

@@ -105,6 +105,11 @@ impl Frame {
         }
     }
 
+    /// All 14 bytes; a short frame ends in zeros.
+    pub(crate) fn long_bytes(&self) -> &[u8; LONG_BYTES] {
+        &self.bytes
+    }
+
     /// The downlink format.
     pub fn df(&self) -> Df {
         Df::of_first_byte(self.bytes[0])
@@ -129,7 +134,7 @@ impl Frame {
     pub(crate) fn me(&self) -> MeBits {
         let mut field = [0; 7];
         field.copy_from_slice(&self.bytes[4..11]);
-        MeBits(field)
+        MeBits::new(field)
     }
 }
 
@@ -143,19 +148,68 @@ impl core::fmt::Debug for Frame {
     }
 }
 
-/// The 56 bits of an ME or MB field, numbered from 1 as in the standard.
+/// The 56 bits of an ME, MB or MV field, numbered from 1 as in the standard.
+///
+/// ```text
+///   1                              32 33                     56
+///   | high                           | low, left aligned      |
+/// ```
+/// Two words, because the processor shifts 32 bits in one cycle; with constant bit numbers a field costs one or two shifts and a mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MeBits(pub [u8; 7]);
+pub struct MeBits {
+    high: u32,
+    low: u32,
+}
 
 impl MeBits {
-    /// Bits `first..=last`, at most 32 of them.
-    pub fn bits(&self, first: usize, last: usize) -> u32 {
-        bits(&self.0, first, last)
+    /// The field of seven bytes.
+    pub const fn new([a, b, c, d, e, f, g]: [u8; 7]) -> MeBits {
+        MeBits {
+            high: u32::from_be_bytes([a, b, c, d]),
+            low: u32::from_be_bytes([e, f, g, 0]),
+        }
+    }
+
+    /// The seven bytes.
+    pub const fn bytes(self) -> [u8; 7] {
+        let [a, b, c, d] = self.high.to_be_bytes();
+        let [e, f, g, _] = self.low.to_be_bytes();
+        [a, b, c, d, e, f, g]
+    }
+
+    /// Bits `first..=last`, counted from 1, at most 32 of them; a bit beyond 56 reads 0.
+    #[inline(always)]
+    pub const fn bits(&self, first: usize, last: usize) -> u32 {
+        let count = last + 1 - first;
+        let aligned = if first > 32 {
+            self.low << (first - 33)
+        } else if last <= 32 || first == 1 {
+            self.high << (first - 1)
+        } else {
+            self.high << (first - 1) | self.low >> (33 - first)
+        };
+        aligned >> (32 - count)
     }
 
     /// One bit.
-    pub fn bit(&self, number: usize) -> bool {
+    #[inline(always)]
+    pub const fn bit(&self, number: usize) -> bool {
         self.bits(number, number) != 0
+    }
+
+    /// The same with one bit cleared.
+    pub const fn without(mut self, number: usize) -> MeBits {
+        if number <= 32 {
+            self.high &= !(1 << (32 - number));
+        } else {
+            self.low &= !(1 << (64 - number));
+        }
+        self
+    }
+
+    /// Whether all 56 bits are 0.
+    pub const fn is_zero(self) -> bool {
+        self.high | self.low == 0
     }
 }
 
@@ -202,6 +256,28 @@ pub(crate) mod tests {
             assert_eq!(Df::of_first_byte(first), Df::COMM_D);
         }
         assert_eq!(Df::of_first_byte(0xBF).number(), 23);
+    }
+
+    #[test]
+    fn every_run_of_bits_of_a_field_is_the_one_of_its_bytes() {
+        let bytes = [0x8D, 0x4C, 0xA7, 0xE8, 0x58, 0xB9, 0x83];
+        let field = MeBits::new(bytes);
+        assert_eq!(field.bytes(), bytes);
+        for first in 1..=56 {
+            for last in first..=56.min(first + 31) {
+                assert_eq!(
+                    field.bits(first, last),
+                    bits(&bytes, first, last),
+                    "{first} {last}"
+                );
+            }
+            let cleared = field.without(first);
+            assert!(!cleared.bit(first));
+            let others = (1..=56).filter(|&bit| bit != first);
+            assert!(others.clone().all(|bit| cleared.bit(bit) == field.bit(bit)));
+        }
+        assert!(MeBits::new([0; 7]).is_zero());
+        assert!(!MeBits::new([0, 0, 0, 0, 0, 0, 1]).is_zero());
     }
 
     #[test]

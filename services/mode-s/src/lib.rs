@@ -14,12 +14,14 @@
 //!
 //! | DF | what it is | decoded |
 //! |---|---|---|
-//! | 0, 16 | air-to-air surveillance | vertical status, altitude |
-//! | 4, 20 | altitude reply, Comm-B | flight status, altitude; MB is not |
-//! | 5, 21 | identity reply, Comm-B | flight status, Mode A code; MB is not |
-//! | 11 | all-call reply | capability |
-//! | 17, 18 | extended squitter | ME type codes 1-22, 28, 29, 31 but the reserved subtypes; others are named as not decoded |
-//! | 19, 24 and the rest | military, Comm-D, unassigned | no: counted as not decoded |
+//! | 0, 16 | air-to-air surveillance | vertical status, ACAS, altitude; resolution advisories that DF16 coordinates |
+//! | 4, 20 | altitude reply, Comm-B | flight status, DR, UM, altitude; MB as it is |
+//! | 5, 21 | identity reply, Comm-B | flight status, DR, UM, Mode A code; MB as it is |
+//! | 11 | all-call reply | capability, interrogator |
+//! | 17, 18 | extended squitter, TIS-B, ADS-R | ME type codes 0-22, 28, 29, 31 but the reserved subtypes, and coarse TIS-B; the rest is counted by type code |
+//! | 19 | military extended squitter | AF 0 as DF17; the others are named |
+//! | 24 | Comm-D | the segment's number and its bytes |
+//! | the rest | unassigned | no: counted |
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -29,6 +31,8 @@ extern crate std;
 pub mod address;
 pub mod altitude;
 pub mod angle;
+pub mod coarse_position;
+pub mod comm_d;
 pub mod cpr;
 pub mod crc24;
 pub mod frame;
@@ -39,25 +43,33 @@ pub mod message;
 pub mod nic;
 pub mod nl;
 pub mod parity;
+pub mod possible;
 pub mod surveillance;
 
 pub use address::{Address, Icao};
 pub use altitude::{Ac12, Ac13, AltitudeFt};
 pub use angle::CentiDegrees;
+pub use coarse_position::CoarsePosition;
+pub use comm_d::CommD;
 pub use cpr::{Cpr, CprFormat, CprKind, Position};
-pub use frame::{Df, Frame, FrameError};
+pub use frame::{Df, Frame, FrameError, MeBits};
 pub use identity::ModeACode;
 pub use kind::{Kind, KindCounters};
 pub use me::Me;
-pub use me::acas_ra::AcasRa;
+pub use me::acas_ra::{AcasRa, Threat};
 pub use me::airborne_position::{AirbornePosition, AltitudeSource, PositionAltitude};
 pub use me::emergency::{EmergencyState, EmergencyStatus};
 pub use me::identification::{Callsign, Category, Identification};
+pub use me::no_position::NoPosition;
 pub use me::operational_status::{AntennaOffset, LateralOffset, OperationalStatus, SizeCode};
 pub use me::surface_position::SurfacePosition;
-pub use me::target_state::{AutopilotModes, SelectedAltitude, SelectionSource, TargetState};
+pub use me::target_state::{
+    AutopilotModes, SelectedAltitude, SelectionSource, TargetIntent, TargetState,
+};
+pub use me::tisb_velocity::TisbVelocity;
 pub use me::velocity::{Airspeed, HorizontalVelocity, Velocity, VerticalRate};
-pub use message::{Body, Message};
+pub use message::{Body, Message, Origin};
 pub use nic::NicSupplements;
-pub use parity::Parity;
-pub use surveillance::{Capability, FlightStatus};
+pub use parity::{Interrogator, Parity};
+pub use possible::{Impossible, possible};
+pub use surveillance::{AcasReply, Capability, FlightStatus, ReplyControl};

@@ -84,7 +84,9 @@ fn altitude_reply() {
         message.body,
         Body::AltitudeReply {
             flight_status: FlightStatus(0),
-            altitude: Some(AltitudeFt(10_000))
+            control: ReplyControl::default(),
+            altitude: Some(AltitudeFt(10_000)),
+            mb: None,
         }
     );
 }
@@ -97,7 +99,9 @@ fn identity_reply() {
         message.body,
         Body::IdentityReply {
             flight_status: FlightStatus(1),
-            squawk: ModeACode(0o3751)
+            control: ReplyControl::default(),
+            squawk: ModeACode(0o3751),
+            mb: None,
         }
     );
 }
@@ -220,8 +224,115 @@ fn air_air_surveillance_tells_ground_and_altitude() {
             Message::decode(&frame).body,
             Body::AirAir {
                 on_ground,
-                altitude: Some(AltitudeFt(10_000))
+                acas: AcasReply::default(),
+                altitude: Some(AltitudeFt(10_000)),
+                mv: None,
             }
         );
     }
+}
+
+/// A frame of these leading bytes, zeros behind and right parity for `address` (0 where the parity is plain).
+fn frame_of(head: &[u8], length: usize, address: u32) -> Message {
+    let mut bytes = std::vec![0; length];
+    bytes[..head.len()].copy_from_slice(head);
+    let parity = (crate::crc24::remainder(&bytes[..length - 3]) ^ address).to_be_bytes();
+    bytes[length - 3..].copy_from_slice(&parity[1..]);
+    Message::decode(&Frame::from_bytes(&bytes).unwrap())
+}
+
+#[test]
+fn reply_fields_stand_in_their_bits() {
+    // FS 5, DR 0b10110, UM 0b101101.
+    let message = frame_of(&[4 << 3 | 5, 0b1011_0101, 0b1010_0000], 7, 1);
+    let Body::AltitudeReply {
+        flight_status,
+        control,
+        ..
+    } = message.body
+    else {
+        panic!()
+    };
+    assert_eq!(flight_status, FlightStatus(5));
+    assert_eq!(control.downlink_request, 0b10110);
+    assert_eq!(control.utility_message, 0b101101);
+    // CC, SL 5, RI 0b1011.
+    for (df, length, cross_link) in [(0, 7, true), (16, 14, false)] {
+        let head = [df << 3 | 0b010, 0b1010_0101, 0b1000_0000];
+        let Body::AirAir { acas, mv, .. } = frame_of(&head, length, 1).body else {
+            panic!()
+        };
+        assert_eq!(
+            acas,
+            AcasReply {
+                cross_link,
+                sensitivity_level: 5,
+                reply_information: 0b1011,
+            }
+        );
+        assert_eq!(mv.is_some(), length == 14);
+    }
+}
+
+#[test]
+fn df16_with_vds_30_coordinates_an_advisory() {
+    let head = |vds| [0x80, 0, 0, 0, vds, 0x80, 0, 0x20, 0, 0, 0];
+    let advisory = frame_of(&head(0x30), 14, 1).coordination().unwrap();
+    assert!(advisory.bit(9) && advisory.terminated && !advisory.is_active());
+    assert_eq!(frame_of(&head(0x31), 14, 1).coordination(), None);
+    assert_eq!(frame_of(&[0; 4], 7, 1).coordination(), None);
+}
+
+#[test]
+fn df18_by_its_control_field() {
+    let me = 4 << 3 | 1;
+    for (cf, origin) in [
+        (0, Some(Origin::Device)),
+        (1, Some(Origin::AnonymousDevice)),
+        (2, Some(Origin::Tisb)),
+        (3, None),
+        (4, None),
+        (5, Some(Origin::AnonymousTisb)),
+        (6, Some(Origin::Rebroadcast)),
+        (7, None),
+    ] {
+        let message = frame_of(&[18 << 3 | cf, 0, 0, 1, me], 14, 0);
+        match message.body {
+            Body::ExtendedSquitter { origin: found, me } => {
+                assert_eq!(Some(found), origin, "CF {cf}");
+                assert_eq!(found.control_field(), Some(cf));
+                assert_eq!(me.type_code(), 4);
+            }
+            Body::CoarsePosition(position) => {
+                assert_eq!((cf, position.service_volume), (3, 0));
+            }
+            Body::Management { content } => {
+                assert_eq!((cf, content.bits(1, 8)), (4, u32::from(me)));
+            }
+            Body::NotDecoded => assert_eq!(cf, 7),
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+#[test]
+fn military_squitters_by_their_application() {
+    let civil = frame_of(&[19 << 3, 0, 0, 1, 11 << 3], 14, 0);
+    assert!(matches!(
+        civil.body,
+        Body::ExtendedSquitter {
+            origin: Origin::Military,
+            me: Me::AirbornePosition(_)
+        }
+    ));
+    for application in 1..8 {
+        let message = frame_of(&[19 << 3 | application], 14, 0x1234);
+        assert_eq!(message.parity, Parity::Unjudged);
+        assert_eq!(message.body, Body::Military { application });
+    }
+}
+
+#[test]
+fn a_message_stays_small() {
+    assert!(size_of::<Message>() <= 64, "{}", size_of::<Message>());
 }

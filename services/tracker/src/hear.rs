@@ -6,6 +6,7 @@
 //! | DF4, 20 | on ground, IDENT, alert, pressure altitude |
 //! | DF5, 21 | on ground, IDENT, alert, Mode A code |
 //! | DF11, CA of DF17 | on ground |
+//! | no position | pressure altitude |
 //! | identification | callsign, category |
 //! | surface position | on ground, ground speed, track, position, type code for NIC |
 //! | airborne position | airborne, altitude of either kind, IDENT, alert, position, type code and bit 8 for NIC |
@@ -42,6 +43,7 @@ impl Aircraft {
             Body::AirAir {
                 on_ground,
                 altitude,
+                ..
             } => {
                 self.on_ground.set(on_ground, at_ms);
                 self.hear_baro(altitude, at_ms);
@@ -49,6 +51,7 @@ impl Aircraft {
             Body::AltitudeReply {
                 flight_status,
                 altitude,
+                ..
             } => {
                 self.hear_status(flight_status, at_ms);
                 self.hear_baro(altitude, at_ms);
@@ -56,22 +59,32 @@ impl Aircraft {
             Body::IdentityReply {
                 flight_status,
                 squawk,
+                ..
             } => {
                 self.hear_status(flight_status, at_ms);
                 self.squawk.set(squawk, at_ms);
             }
             Body::AllCallReply { capability } => self.hear_ground(capability.on_ground(), at_ms),
-            Body::ExtendedSquitter { capability, me } => {
+            Body::ExtendedSquitter { origin, me } => {
+                let capability = origin.capability();
                 self.hear_ground(capability.and_then(|ca| ca.on_ground()), at_ms);
                 return self.hear_me(&me, known, at_ms);
             }
-            Body::NotDecoded => {}
+            Body::CoarsePosition(_)
+            | Body::Management { .. }
+            | Body::Military { .. }
+            | Body::CommD(_)
+            | Body::NotDecoded => {}
         }
         None
     }
 
     fn hear_me(&mut self, me: &Me, known: &KnownPlaces, at_ms: u64) -> Option<PositionOutcome> {
         match me {
+            Me::NoPosition(position) => {
+                self.hear_baro(position.altitude, at_ms);
+                None
+            }
             Me::Identification(identification) => {
                 self.category.set(identification.category, at_ms);
                 if let Some(callsign) = identification.callsign {
@@ -89,6 +102,10 @@ impl Aircraft {
             }
             Me::Velocity(velocity) => {
                 self.hear_velocity(velocity, at_ms);
+                None
+            }
+            Me::TisbVelocity(told) => {
+                self.hear_velocity(&told.velocity, at_ms);
                 None
             }
             Me::Emergency(emergency) => {

@@ -2,7 +2,8 @@
 
 use super::*;
 use mode_s::{
-    AltitudeFt, Body, Capability, Df, FlightStatus, Frame, Icao, ModeACode, Parity, crc24,
+    AltitudeFt, Body, Capability, Df, FlightStatus, Frame, Icao, ModeACode, Origin, Parity,
+    ReplyControl, crc24,
 };
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -32,7 +33,9 @@ fn identity(icao: u32, squawk: u16) -> Message {
         parity: Parity::Address(Icao(icao)),
         body: Body::IdentityReply {
             flight_status: FlightStatus(4),
+            control: ReplyControl::default(),
             squawk: ModeACode(squawk),
+            mb: None,
         },
     }
 }
@@ -100,7 +103,7 @@ fn broken_and_unjudged_frames_change_nothing() {
     let mut tracker = Tracker::<4>::new();
     let broken = message("8D4CA7E858B9838206BA422BBD7A");
     assert_eq!(tracker.on_frame(&broken, 0), Outcome::Broken);
-    let military = message("9800000000000000000000000000");
+    let military = message("9900000000000000000000000000");
     assert_eq!(tracker.on_frame(&military, 0), Outcome::NotTracked);
     assert!(tracker.is_empty());
     assert_balanced(&tracker);
@@ -179,7 +182,7 @@ fn gnss_height_is_pressure_altitude_and_difference() {
     };
     let position = Message {
         body: Body::ExtendedSquitter {
-            capability: None,
+            origin: Origin::Device,
             me,
         },
         ..message("8D485020994409940838175B284F")
@@ -314,7 +317,9 @@ fn an_old_difference_gives_no_gnss_height() {
             parity: Parity::Address(Icao(0x485020)),
             body: Body::AltitudeReply {
                 flight_status: FlightStatus(0),
+                control: ReplyControl::default(),
                 altitude: Some(AltitudeFt(1_000)),
+                mb: None,
             },
         };
         let mut tracker = Tracker::<3>::new();

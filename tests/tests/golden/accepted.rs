@@ -21,9 +21,27 @@ pub static ACCEPTED: &[Accepted] = &[
     },
     Accepted {
         peer: Peer::Rs1090,
-        reason: "rs1090 reads an AC field with M = 1 as metres; Annex 10 IV reserves it, and here it is no altitude",
-        applies: |d| d.is_of(Field::Altitude) && has_ac13(d) && d.frame.bytes()[3] & 0x40 != 0,
+        reason: "rs1090 takes AC's bits 20-25 for metres twice too small where M = 1, and none where Q = 1 too; here all 12 bits count",
+        applies: |d| d.is_of(Field::Altitude) && is_metric(d),
         counts: [0, 27],
+    },
+    Accepted {
+        peer: Peer::AdsbDeku,
+        reason: "adsb_deku reads no metric altitudes",
+        applies: |d| d.is_of(Field::Altitude) && is_metric(d) && d.theirs == Said::Nothing,
+        counts: [0, 27],
+    },
+    Accepted {
+        peer: Peer::Rs1090,
+        reason: "rs1090 reads a TIS-B velocity as one of ADS-B: its NACv is the lower part of NACp (DO-260B 2.2.17.3.4)",
+        applies: |d| is_of_tisb_velocity(d, &[Field::Nacv]),
+        counts: [0, 22],
+    },
+    Accepted {
+        peer: Peer::AdsbDeku,
+        reason: "adsb_deku reads a TIS-B velocity as one of ADS-B: its NACv is part of NACp, its GNSS-baro difference NACv and SIL",
+        applies: |d| is_of_tisb_velocity(d, &[Field::Nacv, Field::GnssMinusBaro]),
+        counts: [0, 25],
     },
     Accepted {
         peer: Peer::Rs1090,
@@ -195,12 +213,22 @@ fn altitude(d: &Difference) -> Option<AltitudeFt> {
     }
 }
 
-fn has_ac13(d: &Difference) -> bool {
-    matches!(d.frame.df().number(), 0 | 4 | 16 | 20)
+/// An AC field of 13 bits with M = 1.
+fn is_metric(d: &Difference) -> bool {
+    matches!(d.frame.df().number(), 0 | 4 | 16 | 20) && d.frame.bytes()[3] & 0x40 != 0
+}
+
+fn is_of_tisb_velocity(d: &Difference, fields: &[Field]) -> bool {
+    fields.iter().any(|&field| d.is_of(field)) && matches!(me(d), Some(Me::TisbVelocity(_)))
 }
 
 fn is_velocity_without_speed(d: &Difference) -> bool {
-    matches!(me(d), Some(Me::Velocity(velocity)) if velocity.horizontal.is_none())
+    let velocity = match me(d) {
+        Some(Me::Velocity(velocity)) => velocity,
+        Some(Me::TisbVelocity(told)) => told.velocity,
+        _ => return false,
+    };
+    velocity.horizontal.is_none()
 }
 
 fn is_inverted_source(d: &Difference) -> bool {

@@ -2,7 +2,7 @@
 
 use mode_s::{
     AltitudeSource, Body, Cpr, CprFormat, Frame, HorizontalVelocity, Me, Message,
-    OperationalStatus, Parity, SelectionSource, TargetState,
+    OperationalStatus, Parity, SelectionSource, TargetState, Velocity,
 };
 use std::collections::BTreeMap;
 
@@ -142,6 +142,7 @@ pub fn ours(frame: &Frame) -> View {
         Body::AirAir {
             on_ground,
             altitude,
+            ..
         } => {
             say(Field::VerticalStatus, Said::Whole(on_ground.into()));
             say(Field::Altitude, feet(altitude));
@@ -149,6 +150,7 @@ pub fn ours(frame: &Frame) -> View {
         Body::AltitudeReply {
             flight_status,
             altitude,
+            ..
         } => {
             say(Field::FlightStatus, Said::Whole(flight_status.0.into()));
             say(Field::Altitude, feet(altitude));
@@ -156,6 +158,7 @@ pub fn ours(frame: &Frame) -> View {
         Body::IdentityReply {
             flight_status,
             squawk,
+            ..
         } => {
             say(Field::FlightStatus, Said::Whole(flight_status.0.into()));
             say(Field::Squawk, Said::Text(format!("{:04o}", squawk.0)));
@@ -163,13 +166,17 @@ pub fn ours(frame: &Frame) -> View {
         Body::AllCallReply { capability } => {
             say(Field::Capability, capability_class(capability.0));
         }
-        Body::ExtendedSquitter { capability, me } => {
-            if let Some(capability) = capability {
+        Body::ExtendedSquitter { origin, me } => {
+            if let Some(capability) = origin.capability() {
                 say(Field::Capability, capability_class(capability.0));
             }
             view.append(&mut ours_me(&me));
         }
-        Body::NotDecoded => {}
+        Body::CoarsePosition(_)
+        | Body::Management { .. }
+        | Body::Military { .. }
+        | Body::CommD(_)
+        | Body::NotDecoded => {}
     }
     view
 }
@@ -229,31 +236,13 @@ fn ours_me(me: &Me) -> View {
         }
         Me::Velocity(velocity) => {
             say(Field::TypeCode, Said::Whole(19));
-            say(Field::Nacv, Said::Whole(velocity.nacv.into()));
-            match velocity.horizontal {
-                Some(HorizontalVelocity::Ground { speed_kt, track }) => {
-                    say(Field::GroundSpeed, Said::Whole(speed_kt.into()));
-                    say(Field::Track, degrees(track));
-                }
-                Some(HorizontalVelocity::Air { heading, airspeed }) => {
-                    say(Field::Heading, degrees(heading));
-                    say(Field::Airspeed, Said::whole(airspeed.map(|a| a.knots)));
-                    let is_true = airspeed.map(|a| a.is_true);
-                    say(Field::AirspeedIsTrue, Said::whole(is_true));
-                }
-                None => {}
-            }
-            let rate = velocity.vertical_rate;
-            say(
-                Field::VerticalRate,
-                Said::whole(rate.map(|rate| rate.feet_per_minute)),
-            );
-            let is_barometric = rate.map(|rate| rate.is_barometric);
-            say(Field::VerticalRateIsBarometric, Said::whole(is_barometric));
-            say(
-                Field::GnssMinusBaro,
-                Said::whole(velocity.gnss_minus_baro_ft),
-            );
+            view.append(&mut ours_velocity(velocity));
+        }
+        Me::TisbVelocity(told) => {
+            say(Field::TypeCode, Said::Whole(19));
+            view.append(&mut ours_velocity(&told.velocity));
+            view.insert(Field::NacP, Said::Whole(told.nac_p.into()));
+            view.insert(Field::Sil, Said::whole(told.sil));
         }
         Me::Emergency(status) => {
             say(Field::TypeCode, Said::Whole(28));
@@ -270,10 +259,48 @@ fn ours_me(me: &Me) -> View {
             say(Field::TypeCode, Said::Whole(31));
             view.append(&mut ours_operational(status));
         }
+        Me::NoPosition(position) => {
+            say(Field::TypeCode, Said::Whole(0));
+            let feet = position.altitude.map(|feet| feet.0);
+            say(Field::Altitude, Said::whole(feet));
+        }
         Me::NotDecoded { type_code, .. } => {
             say(Field::TypeCode, Said::Whole((*type_code).into()));
         }
     }
+    view
+}
+
+fn ours_velocity(velocity: &Velocity) -> View {
+    let mut view = View::new();
+    let mut say = |field, said| {
+        view.insert(field, said);
+    };
+    say(Field::Nacv, Said::Whole(velocity.nacv.into()));
+    match velocity.horizontal {
+        Some(HorizontalVelocity::Ground { speed_kt, track }) => {
+            say(Field::GroundSpeed, Said::Whole(speed_kt.into()));
+            say(Field::Track, degrees(track));
+        }
+        Some(HorizontalVelocity::Air { heading, airspeed }) => {
+            say(Field::Heading, degrees(heading));
+            say(Field::Airspeed, Said::whole(airspeed.map(|a| a.knots)));
+            let is_true = airspeed.map(|a| a.is_true);
+            say(Field::AirspeedIsTrue, Said::whole(is_true));
+        }
+        None => {}
+    }
+    let rate = velocity.vertical_rate;
+    say(
+        Field::VerticalRate,
+        Said::whole(rate.map(|rate| rate.feet_per_minute)),
+    );
+    let is_barometric = rate.map(|rate| rate.is_barometric);
+    say(Field::VerticalRateIsBarometric, Said::whole(is_barometric));
+    say(
+        Field::GnssMinusBaro,
+        Said::whole(velocity.gnss_minus_baro_ft),
+    );
     view
 }
 

@@ -94,7 +94,7 @@ mod tests {
     /// Type code, SS and the 12 bits of 36 000 ft.
     fn position(type_code: u8, status: u8) -> AirbornePosition {
         let first = type_code << 3 | status << 1;
-        AirbornePosition::decode(MeBits([first, 0xB9, 0x80, 0, 0, 0, 0]))
+        AirbornePosition::decode(MeBits::new([first, 0xB9, 0x80, 0, 0, 0, 0]))
     }
 
     #[test]
@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn bit_8_is_supplement_b_or_one_antenna() {
         let first = 11 << 3 | 1;
-        let position = AirbornePosition::decode(MeBits([first, 0, 0, 0, 0, 0, 0]));
+        let position = AirbornePosition::decode(MeBits::new([first, 0, 0, 0, 0, 0, 0]));
         assert!(position.nic_b_or_single_antenna);
     }
 }

@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn every_state_stands_in_bits_9_to_11() {
         for code in 0..8 {
-            let status = EmergencyStatus::decode(MeBits([0xE1, code << 5, 0, 0, 0, 0, 0]));
+            let status = EmergencyStatus::decode(MeBits::new([0xE1, code << 5, 0, 0, 0, 0, 0]));
             assert_eq!(status.state.code(), code);
             assert_eq!(status.squawk, None);
         }

@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn callsign_and_category() {
-        let id = Identification::decode(MeBits([0x20, 0x2C, 0xC3, 0x71, 0xC3, 0x2C, 0xE0]));
+        let id = Identification::decode(MeBits::new([0x20, 0x2C, 0xC3, 0x71, 0xC3, 0x2C, 0xE0]));
         assert_eq!(id.callsign.unwrap().as_bytes(), b"KLM1023");
         assert_eq!(
             id.category,
@@ -92,12 +92,12 @@ mod tests {
 
     #[test]
     fn blank_or_meaningless_characters_are_no_callsign() {
-        let blank = MeBits([0x20, 0x82, 0x08, 0x20, 0x82, 0x08, 0x20]);
+        let blank = MeBits::new([0x20, 0x82, 0x08, 0x20, 0x82, 0x08, 0x20]);
         assert_eq!(Identification::decode(blank).callsign, None);
         // Code 58, one behind the digit 9.
-        let colon = MeBits([0x20, 58 << 2 | 2, 0x08, 0x20, 0x82, 0x08, 0x20]);
+        let colon = MeBits::new([0x20, 58 << 2 | 2, 0x08, 0x20, 0x82, 0x08, 0x20]);
         assert_eq!(Identification::decode(colon).callsign, None);
-        let at_signs = MeBits([0x20, 0, 0, 0, 0, 0, 0]);
+        let at_signs = MeBits::new([0x20, 0, 0, 0, 0, 0, 0]);
         assert_eq!(Identification::decode(at_signs).callsign, None);
     }
 }

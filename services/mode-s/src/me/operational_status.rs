@@ -3,29 +3,31 @@
 //! | bits | in the air (subtype 0) | on the surface (subtype 1) | from version |
 //! |---|---|---|---|
 //! | 9-10 | 0, else 11-24 are reserved | the same | 1 |
-//! | 11 | 1: TCAS *not* operational; from version 2: operational | (position offset applied) | 1 |
-//! | 12 | 1090ES IN (version 1: a traffic display) | 1090ES IN (the same) | 2 |
-//! | 15 | (air-referenced velocity) | B2 low: below 70 W | 1 |
-//! | 16 | (target state) | UAT IN | 2 |
-//! | 17-19 | 17-18 (trajectory change), 19 UAT IN | NACv | 2 |
+//! | 11 | 1: TCAS *not* operational; from version 2: operational | POA: antenna offset applied | 0, surface 1 |
+//! | 12 | 1090ES IN (before version 2 CDTI, a traffic display) | the same | 0, surface 1 |
+//! | 15 | ARV: tells air-referenced velocity | B2 low: below 70 W | 1 |
+//! | 16 | TS: tells target states (version 1 on) | UAT IN | 2 |
+//! | 17-19 | 17-18 TC: tells trajectory changes (version 1 on), 19 UAT IN | NACv | 2 |
 //! | 20 | | NIC supplement C | 2 |
 //! | 21-24 | | length and width code | 1 |
 //! | 25-26 | 0, else 27-40 are reserved | the same | 1 |
 //! | 27, 28 | RA active, IDENT switch active | the same | 1 |
+//! | 29 | receives ATC services; version 2 has no such bit | the same | 1 |
 //! | 30 | single antenna | the same | 2 |
 //! | 31-32 | SDA | the same | 2 |
 //! | 33-40 | | GPS antenna offset | 2 |
 //! | 41-43 | version | the same | 0 |
 //! | 44 | NIC supplement A | the same | 1 |
 //! | 45-48 | NACp | the same | 1 |
-//! | 49-50 | GVA | | 2 |
+//! | 49-50 | GVA; version 1: BAQ, quality of the barometric altitude | | 1 |
 //! | 51-52 | SIL | the same | 1 |
 //! | 53 | NICbaro | 1: surface positions hold heading, 0: track | 1 |
 //! | 54 | HRD: headings are 1 magnetic, 0 true | the same | 1 |
 //! | 55 | SIL supplement | the same | 2 |
 //!
-//! Fields in brackets are not decoded, nor is anything but the version in version 0, whose classes are laid out in another way. Versions
-//! from 3 are read as 2. Source: ICAO Doc 9871, tables B-2-101 and C-2-101; "The 1090 Megahertz Riddle", operational status.
+//! Version 0 has the classes TCAS and CDTI of subtype 0 alone (its other classes and all its modes are reserved), as long as bits 9-10 are
+//! 0. Versions from 3 are read as 2. Source: ICAO Doc 9871, tables A-2-101, B-2-101 and C-2-101; "The 1090 Megahertz Riddle",
+//! operational status; for version 0 the decoder lib1090 of SeRo Systems, which documents the bits of its CC-4.
 
 use crate::frame::MeBits;
 
@@ -36,6 +38,10 @@ pub struct OperationalStatus {
     pub on_surface: bool,
     /// Version, 0-7 as sent.
     pub version: u8,
+    /// Bits 9-24 as sent: capability class (on the surface with length and width).
+    pub capability_class: u16,
+    /// Bits 25-40 as sent: operational mode (on the surface with the antenna offset).
+    pub operational_mode: u16,
     /// NIC supplement A.
     pub nic_a: Option<bool>,
     /// NIC supplement C.
@@ -64,6 +70,20 @@ pub struct OperationalStatus {
     pub tcas_ra: Option<bool>,
     /// The IDENT switch is active.
     pub ident: Option<bool>,
+    /// Receives ATC services.
+    pub atc_services: Option<bool>,
+    /// CDTI: a traffic display is operational.
+    pub traffic_display: Option<bool>,
+    /// ARV: can tell its velocity through the air.
+    pub air_velocity: Option<bool>,
+    /// TS: can tell its target state.
+    pub target_state: Option<bool>,
+    /// TC: can tell trajectory changes: 0 none, 1 the next, 2 several; 3 is reserved.
+    pub trajectory_change: Option<u8>,
+    /// POA: surface positions are those of the middle of the aircraft, not of its antenna.
+    pub offset_applied: Option<bool>,
+    /// BAQ, 0-3.
+    pub baro_quality: Option<u8>,
     /// 1090ES IN.
     pub es_in: Option<bool>,
     /// UAT IN.
@@ -166,10 +186,13 @@ impl OperationalStatus {
         let modes = me.bits(25, 26) == 0;
         let bit = |number, has: bool| has.then(|| me.bit(number));
         let bits = |first, last, has: bool| has.then(|| me.bits(first, last) as u8);
-        let tcas = bit(11, from_1 && classes && !on_surface);
+        let airborne = classes && !on_surface;
+        let tcas = bit(11, airborne);
         OperationalStatus {
             on_surface,
             version,
+            capability_class: me.bits(9, 24) as u16,
+            operational_mode: me.bits(25, 40) as u16,
             nic_a: bit(44, from_1),
             nic_c: bit(20, from_2 && classes && on_surface),
             nac_p: bits(45, 48, from_1),
@@ -184,6 +207,13 @@ impl OperationalStatus {
             tcas_operational: tcas.map(|bit| bit == from_2),
             tcas_ra: bit(27, from_1 && modes),
             ident: bit(28, from_1 && modes),
+            atc_services: bit(29, version == 1 && modes),
+            traffic_display: bit(12, !from_2 && (airborne || from_1 && classes)),
+            air_velocity: bit(15, from_1 && airborne),
+            target_state: bit(16, from_1 && airborne),
+            trajectory_change: bits(17, 18, from_1 && airborne),
+            offset_applied: bit(11, from_1 && classes && on_surface),
+            baro_quality: bits(49, 50, version == 1 && !on_surface),
             es_in: bit(12, from_2 && classes),
             uat_in: bit(if on_surface { 16 } else { 19 }, from_2 && classes),
             single_antenna: bit(30, from_2 && modes),

@@ -13,7 +13,7 @@ fn with_bits(subtype: u8, version: u8, bits: &[usize]) -> OperationalStatus {
     for bit in bits {
         me[(bit - 1) / 8] |= 0x80 >> ((bit - 1) % 8);
     }
-    OperationalStatus::decode(MeBits(me))
+    OperationalStatus::decode(MeBits::new(me))
 }
 
 #[test]
@@ -23,6 +23,8 @@ fn an_airliner_in_the_air() {
         OperationalStatus {
             on_surface: false,
             version: 2,
+            capability_class: 0x2300,
+            operational_mode: 0x0200,
             nic_a: Some(false),
             nic_c: None,
             nac_p: Some(11),
@@ -37,6 +39,13 @@ fn an_airliner_in_the_air() {
             tcas_operational: Some(true),
             tcas_ra: Some(false),
             ident: Some(false),
+            atc_services: None,
+            traffic_display: None,
+            air_velocity: Some(true),
+            target_state: Some(true),
+            trajectory_change: Some(0),
+            offset_applied: None,
+            baro_quality: None,
             es_in: Some(false),
             uat_in: Some(false),
             single_antenna: Some(false),
@@ -64,6 +73,8 @@ fn an_airliner_on_the_surface() {
         OperationalStatus {
             on_surface: true,
             version: 2,
+            capability_class: 0x0086,
+            operational_mode: 0x0288,
             nic_a: Some(false),
             nic_c: Some(false),
             nac_p: Some(10),
@@ -78,6 +89,13 @@ fn an_airliner_on_the_surface() {
             tcas_operational: None,
             tcas_ra: Some(false),
             ident: Some(false),
+            atc_services: None,
+            traffic_display: None,
+            air_velocity: None,
+            target_state: None,
+            trajectory_change: None,
+            offset_applied: Some(false),
+            baro_quality: None,
             es_in: Some(false),
             uat_in: Some(false),
             single_antenna: Some(false),
@@ -99,7 +117,9 @@ fn an_airliner_on_the_surface() {
 #[test]
 fn the_tcas_bit_was_turned_round_in_version_2() {
     for (version, bits, operational) in [
-        (0, &[11][..], None),
+        (0, &[][..], Some(true)),
+        (0, &[11][..], Some(false)),
+        (0, &[10][..], None),
         (1, &[][..], Some(true)),
         (1, &[11][..], Some(false)),
         (2, &[][..], Some(false)),
@@ -145,14 +165,57 @@ fn each_flag_has_its_bit() {
 }
 
 #[test]
-fn version_0_tells_its_version_alone() {
-    let every_bit: std::vec::Vec<usize> = (9..=40).chain(44..=56).collect();
+fn version_0_tells_two_classes_alone() {
+    let every_bit: std::vec::Vec<usize> = (13..=40).chain(44..=56).collect();
     for subtype in [0, 1] {
         let none = with_bits(subtype, 0, &[]);
-        assert_eq!(with_bits(subtype, 0, &every_bit), none);
+        let all = with_bits(subtype, 0, &every_bit);
+        let raw = OperationalStatus {
+            capability_class: all.capability_class,
+            operational_mode: all.operational_mode,
+            ..none
+        };
+        assert_eq!(all, raw);
         assert_eq!(none.version, 0);
         assert_eq!((none.nac_p, none.sil, none.ident), (None, None, None));
+        let in_the_air = subtype == 0;
+        assert_eq!(none.traffic_display, in_the_air.then_some(false));
+        assert_eq!(none.tcas_operational, in_the_air.then_some(true));
     }
+    let both = with_bits(0, 0, &[11, 12]);
+    assert_eq!(both.traffic_display, Some(true));
+    assert_eq!(both.tcas_operational, Some(false));
+}
+
+#[test]
+fn capabilities_of_versions_1_and_2() {
+    type Flag = fn(&OperationalStatus) -> Option<bool>;
+    let flags: [(u8, u8, usize, Flag); 8] = [
+        (0, 1, 12, |s| s.traffic_display),
+        (1, 1, 12, |s| s.traffic_display),
+        (0, 1, 29, |s| s.atc_services),
+        (0, 1, 15, |s| s.air_velocity),
+        (0, 2, 15, |s| s.air_velocity),
+        (0, 2, 16, |s| s.target_state),
+        (1, 1, 11, |s| s.offset_applied),
+        (1, 2, 11, |s| s.offset_applied),
+    ];
+    for (subtype, version, bit, flag) in flags {
+        assert_eq!(flag(&with_bits(subtype, version, &[bit])), Some(true));
+        assert_eq!(flag(&with_bits(subtype, version, &[])), Some(false));
+        // Another layout of classes and modes.
+        assert_eq!(flag(&with_bits(subtype, version, &[10, 26, bit])), None);
+    }
+    let status = with_bits(0, 1, &[17, 49]);
+    assert_eq!(
+        (status.trajectory_change, status.baro_quality),
+        (Some(2), Some(2))
+    );
+    let status = with_bits(0, 2, &[18, 49]);
+    assert_eq!(
+        (status.trajectory_change, status.baro_quality),
+        (Some(1), None)
+    );
 }
 
 #[test]

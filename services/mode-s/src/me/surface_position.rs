@@ -17,6 +17,8 @@ use crate::frame::MeBits;
 pub struct SurfacePosition {
     /// TC 5-8.
     pub type_code: u8,
+    /// The movement code, 0-127.
+    pub movement: u8,
     /// Ground speed in eighths of a knot, where known; 175 kt stands for that and more.
     pub ground_speed_eighths: Option<u16>,
     /// Track (or heading, which only the operational status tells), where valid.
@@ -33,6 +35,7 @@ impl SurfacePosition {
         let type_code = me.bits(1, 5) as u8;
         SurfacePosition {
             type_code,
+            movement: me.bits(6, 12) as u8,
             ground_speed_eighths: ground_speed_eighths(me.bits(6, 12) as u16),
             // 128 steps of 2.8125°.
             track: me

@@ -6,17 +6,19 @@
 //! | 8 | SIL supplement | 8-9 | altitude from: 1 MCP/FCU, 2 the altitude held, 3 FMS |
 //! | 9 | altitude from: 0 MCP/FCU, 1 FMS | 10 | altitude is 1 above sea level, 0 flight level |
 //! | 10-20 | altitude: 0 none, else less one in 32 ft | 11 | 0 (1: an older layout, not decoded) |
-//! | 21-29 | pressure setting: 0 none, else less one in 0.8 hPa from 800 | 12-15 | capability and mode |
+//! | 21-29 | pressure setting: 0 none, else less one in 0.8 hPa from 800 | 12-13, 14-15 | altitude capability, vertical mode |
 //! | 30 | heading is valid | 16-25 | altitude in 100 ft from -1000 |
 //! | 31-39 | heading in 360/512° | 26-27 | angle from: 0 none |
 //! | | | 28-36 | angle in degrees, from 360 invalid |
-//! | | | 37 | angle is 1 track, 0 heading |
+//! | | | 37, 38-39 | angle is 1 track, 0 heading; horizontal mode |
 //! | 40-43 | NACp | 40-43 | NACp |
 //! | 44 | NICbaro | 44 | NICbaro |
 //! | 45-46 | SIL | 45-46 | SIL |
 //! | 47 | bits 48-50, 52, 54 are valid | 52 | TCAS is *not* operational |
 //! | 48-50 | autopilot, VNAV, altitude hold | 53 | RA is active |
 //! | 52-54 | approach, TCAS operational, LNAV | 54-56 | emergency state |
+//!
+//! Altitude capability: 0 what is held, 1 also by the panel, 2 also by FMS. Modes: 0 unknown, 1 acquiring, 2 capturing or holding.
 //!
 //! Source: "The 1090 Megahertz Riddle", target state and status; the layout of version 1 as pyModeS documents it.
 
@@ -32,7 +34,7 @@ pub enum SelectionSource {
     Mcp,
     /// Flight management system.
     Fms,
-    /// The altitude that is being held (version 1 only).
+    /// What is being held (version 1 only).
     Held,
 }
 
@@ -43,6 +45,23 @@ pub struct SelectedAltitude {
     pub source: SelectionSource,
     /// Its value.
     pub altitude: AltitudeFt,
+}
+
+/// What version 1 tells beyond the later layout.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TargetIntent {
+    /// The target altitude is above sea level; otherwise a flight level.
+    pub above_sea_level: bool,
+    /// Which target altitudes the aircraft can tell, 0-2; 3 is reserved.
+    pub altitude_capability: u8,
+    /// Vertical mode: 0 unknown, 1 acquiring, 2 capturing or holding; 3 is reserved.
+    pub vertical_mode: u8,
+    /// Who selected heading or track.
+    pub angle_source: Option<SelectionSource>,
+    /// The selected track, of aircraft that select a track.
+    pub selected_track: Option<CentiDegrees>,
+    /// Horizontal mode, as the vertical one.
+    pub horizontal_mode: u8,
 }
 
 /// What the autopilot does.
@@ -87,6 +106,8 @@ pub struct TargetState {
     pub tcas_ra: Option<bool>,
     /// The emergency state; subtype 0.
     pub emergency: Option<EmergencyState>,
+    /// What only subtype 0 tells.
+    pub intent: Option<TargetIntent>,
 }
 
 impl TargetState {
@@ -133,25 +154,23 @@ fn version_2(me: MeBits) -> TargetState {
         tcas_operational: me.bit(53),
         tcas_ra: None,
         emergency: None,
+        intent: None,
     }
 }
 
 fn version_1(me: MeBits) -> TargetState {
-    let source = match me.bits(8, 9) {
-        1 => Some(SelectionSource::Mcp),
-        2 => Some(SelectionSource::Held),
-        3 => Some(SelectionSource::Fms),
-        _ => None,
-    };
     // Steps of 100 ft from -1000 ft.
     let altitude = AltitudeFt(me.bits(16, 25) as i32 * 100 - 1_000);
-    let angle = me.bits(28, 36) as u16;
-    let is_heading = me.bits(26, 27) != 0 && !me.bit(37);
+    let angle_source = source(me.bits(26, 27));
+    let degrees = me.bits(28, 36) as u16;
+    let angle = (angle_source.is_some() && degrees < 360).then_some(CentiDegrees(degrees * 100));
+    let is_track = me.bit(37);
     TargetState {
         subtype: 0,
-        selected_altitude: source.map(|source| SelectedAltitude { source, altitude }),
+        selected_altitude: source(me.bits(8, 9))
+            .map(|source| SelectedAltitude { source, altitude }),
         pressure_setting_tenths: None,
-        selected_heading: (is_heading && angle < 360).then_some(CentiDegrees(angle * 100)),
+        selected_heading: angle.filter(|_| !is_track),
         nac_p: me.bits(40, 43) as u8,
         nic_baro: me.bit(44),
         sil: me.bits(45, 46) as u8,
@@ -160,6 +179,24 @@ fn version_1(me: MeBits) -> TargetState {
         tcas_operational: !me.bit(52),
         tcas_ra: Some(me.bit(53)),
         emergency: Some(EmergencyState::of_code(me.bits(54, 56) as u8)),
+        intent: Some(TargetIntent {
+            above_sea_level: me.bit(10),
+            altitude_capability: me.bits(12, 13) as u8,
+            vertical_mode: me.bits(14, 15) as u8,
+            angle_source,
+            selected_track: angle.filter(|_| is_track),
+            horizontal_mode: me.bits(38, 39) as u8,
+        }),
+    }
+}
+
+/// Who selected, by the code of version 1; 0 is nothing selected.
+const fn source(code: u32) -> Option<SelectionSource> {
+    match code {
+        1 => Some(SelectionSource::Mcp),
+        2 => Some(SelectionSource::Held),
+        3 => Some(SelectionSource::Fms),
+        _ => None,
     }
 }
 

@@ -9,7 +9,7 @@ fn with_bits(bits: &[usize]) -> MeBits {
     for bit in bits {
         me[(bit - 1) / 8] |= 0x80 >> ((bit - 1) % 8);
     }
-    MeBits(me)
+    MeBits::new(me)
 }
 
 #[test]
@@ -40,6 +40,7 @@ fn the_published_frame() {
             tcas_operational: true,
             tcas_ra: None,
             emergency: None,
+            intent: None,
         }
     );
 }

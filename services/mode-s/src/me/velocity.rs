@@ -1,10 +1,12 @@
 //! Airborne velocity (TC 19, BDS 0,9): over the ground (subtypes 1, 2) or through the air (3, 4), and climb.
 //!
 //! ```text
-//!   1    6  9 11   14           25           36 37       47 49       56
-//!   | TC |ST|..|NACv|W| east-west |S| north-south |src|s|rate|  |s| GNSS-baro |    ST 1, 2
-//!                   |H| heading   |T| airspeed    |                                ST 3, 4
+//!   1    6  9  10  11   14           25           36 37       47 49       56
+//!   | TC |ST|IC|IFR|NACv|W| east-west |S| north-south |src|s|rate|  |s| GNSS-baro |    ST 1, 2
+//!                       |H| heading   |T| airspeed    |                                ST 3, 4
 //! ```
+//! IC: the intent has changed (reserved from version 2 on). IFR: able to fly by ADS-B under instrument rules (reserved from version 2 on).
+//! The highest code of a field stands for its value and more: 1022 or 4088 kt, 32 640 ft/min, 3150 ft.
 //! Subtypes 2 and 4 are supersonic: speeds in steps of 4 kt. In every field 0 means "not available" and 1 means zero, so the value is
 //! the field less one. src: 0 GNSS, 1 barometric. Source: "The 1090 Megahertz Riddle", airborne velocity.
 
@@ -51,6 +53,12 @@ pub struct VerticalRate {
 /// TC 19, subtypes 1-4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Velocity {
+    /// Subtype, 1-4.
+    pub subtype: u8,
+    /// IC: the intent has changed.
+    pub intent_change: bool,
+    /// IFR: able to fly by ADS-B under instrument rules.
+    pub ifr_capable: bool,
     /// NACv (NUCr in version 0), 0-7 as sent.
     pub nacv: u8,
     /// Speed and direction; `None` where a component is missing.
@@ -67,6 +75,9 @@ impl Velocity {
         let subtype = me.bits(6, 8);
         let step = if subtype.is_multiple_of(2) { 4 } else { 1 };
         Velocity {
+            subtype: subtype as u8,
+            intent_change: me.bit(9),
+            ifr_capable: me.bit(10),
             nacv: me.bits(11, 13) as u8,
             horizontal: if subtype <= 2 {
                 over_ground(me, step)
@@ -132,13 +143,23 @@ mod tests {
     }
 
     #[test]
+    fn intent_change_and_ifr_capability_stand_in_bits_9_and_10() {
+        for (second, intent, ifr) in [(0x80, true, false), (0x40, false, true)] {
+            let velocity = Velocity::decode(MeBits::new([19 << 3 | 1, second, 0, 0, 0, 0, 0]));
+            assert_eq!(velocity.intent_change, intent);
+            assert_eq!(velocity.ifr_capable, ifr);
+            assert_eq!((velocity.subtype, velocity.nacv), (1, 0));
+        }
+    }
+
+    #[test]
     fn supersonic_speeds_count_four_knots() {
         // ST 2, 101 east (one step less), 1 north.
         let mut me = [19 << 3 | 2, 0, 0, 0, 0, 0, 0];
         me[2] = 101;
         me[4] = 1 << 5;
         assert_eq!(
-            Velocity::decode(MeBits(me)).horizontal,
+            Velocity::decode(MeBits::new(me)).horizontal,
             Some(HorizontalVelocity::Ground {
                 speed_kt: 400,
                 track: Some(CentiDegrees(9000))
@@ -150,7 +171,7 @@ mod tests {
     fn a_missing_component_leaves_no_ground_velocity() {
         let mut me = [19 << 3 | 1, 0, 0, 0, 0, 0, 0];
         me[2] = 101;
-        let velocity = Velocity::decode(MeBits(me));
+        let velocity = Velocity::decode(MeBits::new(me));
         assert_eq!(velocity.horizontal, None);
         assert_eq!(velocity.vertical_rate, None);
         assert_eq!(velocity.gnss_minus_baro_ft, None);
