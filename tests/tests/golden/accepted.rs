@@ -33,9 +33,9 @@ pub static ACCEPTED: &[Accepted] = &[
     },
     Accepted {
         peer: Peer::Rs1090,
-        reason: "rs1090 reads a TIS-B velocity as one of ADS-B: its NACv is the lower part of NACp (DO-260B 2.2.17.3.4)",
-        applies: |d| is_of_tisb_velocity(d, &[Field::Nacv]),
-        counts: [0, 22],
+        reason: "rs1090 reads a TIS-B velocity as one of ADS-B: its NACv is part of NACp, its GNSS-baro difference NACv and SIL (DO-260B 2.2.17.3.4)",
+        applies: |d| is_of_tisb_velocity(d, &[Field::Nacv, Field::GnssMinusBaro]),
+        counts: [0, 36],
     },
     Accepted {
         peer: Peer::AdsbDeku,
