@@ -193,11 +193,11 @@ fn an_interrupt_of_equal_or_lower_priority_waits() {
 #[test]
 fn a_register_that_is_not_modelled_stops_the_chip_by_name() {
     let mut chip = chip(&FOREVER);
-    chip.bus.read32(0x4004_c004);
+    chip.bus.read32(0x4006_4010);
     let halt = run(&mut chip, 10).expect_err("it stops");
     assert_eq!(
         halt.fault.to_string(),
-        "read of ADC+0x004 (0x4004c004) is not modelled"
+        "read of VREG_AND_CHIP_RESET+0x010 (0x40064010) is not modelled"
     );
 }
 

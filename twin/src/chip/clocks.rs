@@ -161,6 +161,21 @@ impl Clocks {
         Self::divided(source, self.registers[0x58 / 4])
     }
 
+    /// ADC clock in Hz; the converter is made for 48 MHz.
+    pub fn adc_hz(&self) -> u64 {
+        let ctrl = self.registers[0x60 / 4];
+        let source = match ctrl >> 5 & 7 {
+            _ if ctrl & (1 << 11) == 0 => 0,
+            0 => self.pll[1].hz(),
+            1 => self.pll[0].hz(),
+            2 => ROSC_HZ,
+            3 => self.xosc_hz(),
+            _ => 0,
+        };
+        // Integer part of two bits; 0 means 2^16 there too, as in the other dividers, but no image divides clk_adc.
+        Self::divided(source, self.registers[0x64 / 4] & 0x300)
+    }
+
     /// The peripheral clock is the system clock, as the UART model assumes.
     pub fn peri_is_sys(&self) -> bool {
         let ctrl = self.registers[0x48 / 4];

@@ -7,6 +7,7 @@
 //! all of them to that core's own time. Interrupts reach a running core at the end of its slice; a sleeping core wakes at the exact
 //! cycle. When both sleep, time jumps from event to event. Nothing depends on the host's clock: the same input gives the same cycles.
 
+pub mod adc;
 pub mod bus;
 mod clocks;
 pub mod crystal;
@@ -21,6 +22,7 @@ mod profile;
 mod pwm;
 mod rom;
 mod sio;
+mod time;
 mod timer;
 mod uart;
 mod usb;

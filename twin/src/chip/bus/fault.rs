@@ -31,6 +31,8 @@ pub enum Fault {
         "a watchdog reset with PSM_WDSEL={0:#x} would reset only part of the chip, which is not modelled"
     )]
     PartialReset(u32),
+    #[error("ADC input {0} was converted, but nothing is connected to it")]
+    OpenInput(usize),
     #[error("the system clock stopped (clk_sys has no running source)")]
     ClockStopped,
 }

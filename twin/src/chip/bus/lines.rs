@@ -1,7 +1,6 @@
 //! Pads, and the wires that several parties share: whoever moves a line, all others see it before time goes on.
 
 use super::Bus;
-use crate::chip::i2c::Instant;
 use crate::chip::pins::Drivers;
 use crate::chip::pins::functions::{self as f, i2c_pins};
 
@@ -50,11 +49,7 @@ impl Bus {
     fn settle_i2c(&mut self, n: usize) -> bool {
         if let Some((sda, scl)) = self.i2c[n].wire_pins() {
             let levels = (self.pins.level(sda), self.pins.level(scl));
-            let now = Instant {
-                cycle: self.now,
-                time_ps: self.time_ps(),
-                sys_hz: self.sys_hz,
-            };
+            let now = self.instant();
             let (sda_low, scl_low) = self.i2c[n].on_wire(levels.0, levels.1, now);
             let low = u32::from(sda_low) << sda | u32::from(scl_low) << scl;
             // The wire sees its own doing before the controller reacts to it: two lines that move at once would hide a START.

@@ -27,6 +27,7 @@ pub use world::TriggerNet;
 use rp2040_emu::bus::ppb::Ppb;
 use rp2040_emu::core::Nvic;
 
+use super::adc::Adc;
 use super::clocks::Clocks;
 use super::crystal::Crystal;
 use super::dma::Dma;
@@ -37,6 +38,7 @@ use super::pins::Pins;
 use super::pio::Pio;
 use super::pwm::Pwm;
 use super::sio::Sio;
+use super::time::Instant;
 use super::timer::{Timer, Watchdog};
 use super::uart::Uart;
 use super::usb::{DPRAM, Usb};
@@ -59,6 +61,7 @@ mod irq {
     pub const IO_BANK0: u32 = 13;
     pub const SIO_PROC0: u32 = 15;
     pub const UART0: u32 = 20;
+    pub const ADC_FIFO: u32 = 22;
     pub const I2C0: u32 = 23;
 }
 
@@ -110,6 +113,7 @@ pub struct Bus {
     pub dma: Dma,
     pub uart: [Uart; 2],
     pub i2c: [I2c; 2],
+    pub adc: Adc,
     pub timer: Timer,
     pub watchdog: Watchdog,
     pub clocks: Clocks,
@@ -174,6 +178,7 @@ impl Bus {
             dma: Dma::default(),
             uart: [Uart::default(), Uart::default()],
             i2c: [I2c::new(0), I2c::new(1)],
+            adc: Adc::default(),
             timer: Timer::default(),
             watchdog: Watchdog::default(),
             clocks: Clocks::default(),
@@ -256,6 +261,15 @@ impl Bus {
         }
     }
 
+    /// This moment, in the time of what lies outside.
+    pub(super) fn instant(&mut self) -> Instant {
+        Instant {
+            cycle: self.now,
+            time_ps: self.true_ps(),
+            sys_hz: self.sys_hz,
+        }
+    }
+
     fn clocks_changed(&mut self) {
         self.time_ps = self.time_ps();
         self.since = self.now;
@@ -270,6 +284,8 @@ impl Bus {
             (Some(divider), hz) if hz > 0 => self.sys_hz * u64::from(divider) / hz,
             _ => 0,
         };
+        self.adc
+            .set_clock(self.clocks.adc_hz(), self.sys_hz, self.now);
         self.timer.set_tick(tick, self.now);
         self.watchdog.set_tick(tick, self.now);
     }
@@ -283,6 +299,7 @@ impl Bus {
             .min(self.uart[1].next_event())
             .min(self.i2c[0].next_event())
             .min(self.i2c[1].next_event())
+            .min(self.adc.next_event())
             .min(self.usb_host.next_event())
             .min(self.surroundings.next)
             .min(self.pins.next_change())
@@ -371,6 +388,9 @@ impl Bus {
         if lines_moved {
             self.resolve_pins();
         }
+        if self.adc.next_event() <= now {
+            self.advance_adc();
+        }
         if self.usb_host.next_event() <= now {
             let per_ms = self.sys_hz / 1000;
             self.usb_host.advance(&mut self.usb, now, per_ms);
@@ -397,6 +417,7 @@ impl Bus {
     fn compute_lines(&self) -> [u32; 2] {
         let mut lines = self.timer.irq_lines() << irq::TIMER_0;
         lines |= u32::from(self.usb.irq_line()) << irq::USBCTRL;
+        lines |= u32::from(self.adc.irq_line()) << irq::ADC_FIFO;
         for block in 0..2 {
             for line in 0..2 {
                 lines |= u32::from(self.pio[block].irq_line(line))

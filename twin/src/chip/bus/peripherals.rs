@@ -116,4 +116,18 @@ impl Bus {
         };
         self.peripheral_write(address & !3, replicated);
     }
+
+    /// Conversions that are due.
+    pub(super) fn advance_adc(&mut self) {
+        let now = self.instant();
+        self.adc.advance(now);
+        self.check_adc();
+    }
+
+    /// An input to which nothing is connected has no voltage to convert.
+    pub(super) fn check_adc(&mut self) {
+        if let Some(channel) = self.adc.unconnected.take() {
+            self.fault.get_or_insert(Fault::OpenInput(channel));
+        }
+    }
 }

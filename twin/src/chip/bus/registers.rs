@@ -42,6 +42,9 @@ impl Bus {
         if on(reset::UART1) {
             self.uart[1].reset();
         }
+        if on(reset::ADC) {
+            self.adc.reset();
+        }
         if on(reset::I2C0) {
             self.i2c[0].reset();
         }
@@ -105,6 +108,7 @@ impl Bus {
                     self.resolve_pins();
                     value
                 }
+                0x4004_c000 => self.adc.read(offset),
                 0x4005_0000 => self.pwm.read(offset, now),
                 0x4005_4000 => self.timer.read(offset, now),
                 0x4005_8000 => self.watchdog.read(offset, now),
@@ -207,6 +211,12 @@ impl Bus {
                 let n = usize::from(base == 0x4004_8000);
                 let ok = self.i2c[n].write(offset, value, now);
                 self.resolve_pins();
+                return ok;
+            }
+            0x4004_c000 => {
+                let now = self.instant();
+                let ok = self.adc.write(offset, value, now);
+                self.check_adc();
                 return ok;
             }
             0x4005_0000 => {

@@ -16,6 +16,7 @@ impl Bus {
             23 => self.uart[1].rx_ready(),
             32 | 34 => self.i2c[(n - 32) / 2].tx_ready(),
             33 | 35 => self.i2c[(n - 32) / 2].rx_ready(),
+            36 => self.adc.ready(),
             0x3f => true,
             _ => false,
         }

@@ -19,6 +19,7 @@ mod engine;
 mod registers;
 mod wire;
 
+use super::time::Instant;
 use engine::{Engine, Step};
 use registers::Registers;
 use wire::Wire;
@@ -45,14 +46,6 @@ impl Clone for Box<dyn I2cTarget> {
     fn clone(&self) -> Self {
         self.clone_box()
     }
-}
-
-/// When something happens: cycle, picoseconds, and the rate between them.
-#[derive(Clone, Copy)]
-pub struct Instant {
-    pub cycle: u64,
-    pub time_ps: u128,
-    pub sys_hz: u64,
 }
 
 /// One controller and the wire on its pins.

@@ -7,7 +7,8 @@
 //! A device that has to send a 0 holds SDA low until SCL says otherwise, whoever moves SCL: that is how a bus hangs, and how nine pulses
 //! free it.
 
-use super::{I2cTarget, Instant};
+use super::I2cTarget;
+use crate::chip::time::Instant;
 
 /// What the bits on the wire are.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
