@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use object::{Object, ObjectSymbol, SymbolKind};
-use twin::chip::Profile;
+use twin::chip::{Profile, Spent};
 
 /// Functions listed a core.
 const LISTED: usize = 20;
@@ -50,19 +50,32 @@ impl Functions {
 
     /// The table of one core as text, `elapsed` being all cycles that passed.
     pub fn table(&self, core: usize, profile: &Profile, elapsed: u64) -> String {
-        let mut by_function: BTreeMap<&str, u64> = BTreeMap::new();
-        for (address, cycles) in profile.addresses() {
-            *by_function.entry(self.at(address)).or_default() += cycles;
+        let mut by_function: BTreeMap<&str, Spent> = BTreeMap::new();
+        for (address, spent) in profile.addresses() {
+            *by_function.entry(self.at(address)).or_default() += spent;
         }
-        let mut rows: Vec<(&str, u64)> = by_function.into_iter().collect();
-        rows.sort_by_key(|(_, cycles)| std::cmp::Reverse(*cycles));
+        let mut rows: Vec<(&str, Spent)> = by_function.into_iter().collect();
+        rows.sort_by_key(|(_, spent)| std::cmp::Reverse(spent.cycles));
         let share = |cycles: u64| 100.0 * cycles as f64 / elapsed.max(1) as f64;
+        let total = profile.total();
         let mut text = format!(
-            "core {core}: busy {:.1} % of {elapsed} cycles\n",
-            share(profile.total())
+            "core {core}: busy {:.1} % of {elapsed} cycles, of which {:.1} % waiting for a bus port or for flash; {} misses in the XIP cache\n",
+            share(total.cycles),
+            share(total.waits),
+            total.misses
         );
-        for (name, cycles) in rows.into_iter().take(LISTED) {
-            text.push_str(&format!("{cycles:>12} {:>5.1} % {name}\n", share(cycles)));
+        text.push_str("      cycles         waiting  misses function\n");
+        for (name, spent) in rows.into_iter().take(LISTED) {
+            let Spent {
+                cycles,
+                waits,
+                misses,
+            } = spent;
+            text.push_str(&format!(
+                "{cycles:>12} {:>5.1} % {:>5.1} % {misses:>7} {name}\n",
+                share(cycles),
+                share(waits)
+            ));
         }
         text
     }

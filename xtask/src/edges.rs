@@ -45,8 +45,7 @@ fn without_hardware(folder: &str) -> bool {
 }
 
 fn is_hardware(package: &str) -> bool {
-    // `rp2040-emu` is the instruction set of the twin, not the chip.
-    (package.starts_with("rp2040-") && package != "rp2040-emu")
+    package.starts_with("rp2040-")
         || package.starts_with("cortex-m")
         || package.starts_with("usb-device")
 }
@@ -203,7 +202,6 @@ mod tests {
             ("app", "hal"),
             ("app", "tracker"),
             ("hal", "cortex-m"),
-            ("twin", "rp2040-emu"),
         ]);
         assert_eq!(violations(&graph), Vec::<String>::new());
     }

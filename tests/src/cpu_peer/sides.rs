@@ -51,7 +51,10 @@ pub fn in_twin(ram: &[u8]) -> End {
         ram: chip.bus.sram[..RAM_BYTES].to_vec(),
         cycles: chip
             .profile()
-            .map(|cores| cores[0].addresses().collect())
+            .map(|cores| {
+                let spent = cores[0].addresses();
+                spent.map(|(at, spent)| (at, spent.cycles)).collect()
+            })
             .unwrap_or_default(),
         fault,
     }

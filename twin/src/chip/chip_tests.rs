@@ -1,9 +1,8 @@
 //! The chip's own behaviour, seen from its registers: times worked out from the datasheet, and what must be refused.
 
 use super::Chip;
-use super::bus::{Fault, ResetCause};
+use super::bus::{Cause, Fault, ResetCause};
 use super::test_chip::*;
-use rp2040_emu::core::CoreBus;
 
 const UART0: u32 = 0x4003_4000;
 const TIMER: u32 = 0x4005_4000;
@@ -221,7 +220,8 @@ fn an_unaligned_load_is_a_hard_fault() {
         halt.fault,
         Fault::HardFault {
             core: 0,
-            pc: CODE + 2
+            pc: CODE + 2,
+            cause: Cause::Unaligned { address: DATA + 1 }
         }
     );
 }

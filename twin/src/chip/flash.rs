@@ -17,6 +17,12 @@ pub const PROGRAM_PAGE_US: u64 = 400;
 pub const SECTOR: usize = 4096;
 pub const PAGE: usize = 256;
 
+/// Numbers (offset / 4) of the registers that decide what a read costs.
+const CTRLR0: usize = 0;
+const SSIENR: usize = 2;
+const BAUDR: usize = 5;
+const SPI_CTRLR0: usize = 61;
+
 /// Flash contents and the serial port in front of them.
 pub struct Flash {
     pub bytes: Vec<u8>,
@@ -83,6 +89,42 @@ impl Flash {
             (0x4b, 5..=12) => self.unique_id[n - 5],
             _ => 0xff,
         }
+    }
+
+    /// Whether the serial interface is on, as boot2 leaves it.
+    pub fn interface_enabled(&self) -> bool {
+        self.registers[SSIENR] & 1 != 0
+    }
+
+    /// The interface as the ROM's `flash_enter_cmd_xip` leaves it: plain reads (03h), slow (datasheet 2.8.3.1.3; divider as in the
+    /// published bootrom, 6).
+    pub fn enter_plain_reads(&mut self) {
+        const ROM_DIVIDER: u32 = 6;
+        self.registers[CTRLR0] = 31 << 16 | 3 << 8;
+        self.registers[SPI_CTRLR0] = 0x03 << 24 | 2 << 8 | 6 << 2;
+        self.registers[BAUDR] = ROM_DIVIDER;
+        self.registers[SSIENR] = 1;
+    }
+
+    /// System cycles of the transfer that brings one line of the XIP cache, as the interface is set, with `extra_bits` bit times more.
+    ///
+    /// Instruction, address and wait cycles, then 64 data bits; SPI_CTRLR0.TRANS_TYPE says which of the first two go over one line.
+    pub fn line_cycles(&self, extra_bits: u64) -> u64 {
+        const LINE_BITS: u64 = 64;
+        let field = |word: usize, at: u32, bits: u32| {
+            u64::from(self.registers[word] >> at & ((1 << bits) - 1))
+        };
+        let lines = 1 << field(CTRLR0, 21, 2);
+        let (instruction_lines, address_lines) = match field(SPI_CTRLR0, 0, 2) {
+            0 => (1, 1),
+            1 => (1, lines),
+            _ => (lines, lines),
+        };
+        let instruction = [0, 4, 8, 16][field(SPI_CTRLR0, 8, 2) as usize] / instruction_lines;
+        let address = 4 * field(SPI_CTRLR0, 2, 4) / address_lines;
+        let wait = field(SPI_CTRLR0, 11, 5);
+        let bits = instruction + address + wait + LINE_BITS / lines + extra_bits;
+        bits * u64::from(self.registers[BAUDR] & 0xfffe)
     }
 
     /// Reads an SSI register.

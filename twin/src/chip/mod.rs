@@ -1,7 +1,7 @@
 //! The RP2040: two Cortex-M0+ cores around one [`bus::Bus`].
 //!
-//! The instruction set comes from `rp2040-emu`; everything around it is modelled here, a file a peripheral. What this file adds to the
-//! cores: boot as the mask ROM does it, preemption between interrupt priorities, sleep and wake, the start of core 1, resets.
+//! The cores are in [`cpu`], each peripheral has a file of its own. This file joins them: boot as the mask ROM does it, slices of time,
+//! sleep and wake, the start of core 1, resets.
 //!
 //! Scheduling: both cores run slices of at most [`SLICE`] cycles ahead of the peripherals, and every access to a peripheral first brings
 //! all of them to that core's own time. Interrupts reach a running core at the end of its slice; a sleeping core wakes at the exact
@@ -10,8 +10,8 @@
 pub mod adc;
 pub mod bus;
 mod clocks;
+pub mod cpu;
 pub mod crystal;
-mod cycles;
 mod dma;
 pub mod flash;
 pub mod i2c;
@@ -28,11 +28,10 @@ mod uart;
 mod usb;
 pub mod usb_host;
 
-use bus::{Bus, Fault, ResetCause};
+use bus::{Bus, Cause, Fault, ResetCause};
+use cpu::{Cpu, Sleep};
 use flash::Flash;
-pub use profile::Profile;
-use rp2040_emu::CortexM0Plus;
-use rp2040_emu::core::CoreBus;
+pub use profile::{Profile, Spent};
 
 /// Most cycles a core runs ahead of the peripherals and of the other core.
 const SLICE: u64 = 64;
@@ -46,12 +45,25 @@ const WHOLE_CHIP: u32 = 0x1_fffc;
 
 /// One core and how far it has run.
 pub(crate) struct Core {
-    pub(crate) cpu: CortexM0Plus,
-    pub(crate) time: u64,
+    pub(crate) cpu: Cpu,
     /// Cycles spent executing, that is not asleep.
     busy: u64,
     /// Held in reset or waiting in ROM for its start.
     stopped: bool,
+    /// A ROM function that takes its time returns to its caller at this cycle.
+    rom_until: Option<u64>,
+}
+
+impl Core {
+    /// As after a reset at cycle `now`; what is known of its stack stays known.
+    fn restart(&mut self, id: usize, now: u64) {
+        let limit = self.cpu.stack.limit;
+        let waits = self.cpu.waits;
+        self.cpu = Cpu::new(id, now);
+        self.cpu.waits = waits;
+        self.cpu.stack.limit = limit;
+        self.rom_until = None;
+    }
 }
 
 /// A fault and where it happened.
@@ -81,6 +93,8 @@ pub struct Chip {
     pub resets: Vec<ResetEvent>,
     /// Cycles spent at each instruction address, a table a core, while profiling.
     profile: Option<Box<[Profile; 2]>>,
+    /// A HardFault ends the run (otherwise the image's handler gets it, as on the chip).
+    pub stop_at_hard_fault: bool,
 }
 
 impl Chip {
@@ -89,10 +103,10 @@ impl Chip {
         let mut bus = Bus::new(flash);
         rom::write_header(&mut bus.rom);
         let core = |id| Core {
-            cpu: CortexM0Plus::with_id(id),
-            time: 0,
+            cpu: Cpu::new(id, 0),
             busy: 0,
             stopped: id == 1,
+            rom_until: None,
         };
         let mut chip = Self {
             cores: [core(0), core(1)],
@@ -100,6 +114,7 @@ impl Chip {
             launch: Vec::new(),
             resets: Vec::new(),
             profile: None,
+            stop_at_hard_fault: true,
         };
         chip.reset(ResetCause::PowerOn);
         chip
@@ -119,13 +134,12 @@ impl Chip {
     pub fn take_over(&mut self, core: usize, at: u32, code: &[u8], argument: u32) {
         let offset = (at - 0x2000_0000) as usize;
         self.bus.sram[offset..offset + code.len()].copy_from_slice(code);
-        let time = self.bus.now;
+        self.bus.watch_write(offset, code.len());
         let taken = &mut self.cores[core];
-        taken.cpu = CortexM0Plus::with_id(core as u8);
+        taken.cpu = Cpu::new(core, self.bus.now);
         taken.cpu.regs.primask = 1;
         taken.cpu.regs.r[0] = argument;
         taken.cpu.regs.set_pc(at);
-        taken.time = time;
         taken.stopped = false;
         self.bus.asleep[core] = false;
         self.bus.wfe[core] = false;
@@ -153,8 +167,7 @@ impl Chip {
         self.bus.reset(cause);
         self.launch.clear();
         for (id, core) in self.cores.iter_mut().enumerate() {
-            core.cpu = CortexM0Plus::with_id(id as u8);
-            core.time = now;
+            core.restart(id, now);
             core.stopped = id == 1;
         }
         // What the mask ROM does: check boot2's CRC-32, copy it to SRAM, run it with LR = 0.
@@ -167,11 +180,8 @@ impl Chip {
         let at = (BOOT2_AT - 0x2000_0000) as usize;
         let (flash, sram) = (&self.bus.flash.bytes, &mut self.bus.sram);
         sram[at..at + BOOT2].copy_from_slice(&flash[..BOOT2]);
-        let regs = &mut self.cores[0].cpu.regs;
-        regs.msp = BOOT2_AT;
-        regs.r[13] = BOOT2_AT;
-        regs.r[14] = 0;
-        regs.set_pc(BOOT2_AT);
+        self.bus.watch_write(at, BOOT2);
+        self.cores[0].cpu.start(BOOT2_AT, BOOT2_AT);
     }
 
     /// Runs until cycle `until` or the first fault.
@@ -205,12 +215,13 @@ impl Chip {
             // Until the core that is behind has caught up, the other one waits.
             let behind = (0..2)
                 .filter(|&k| awake[k])
-                .map(|k| self.cores[k].time)
+                .map(|k| self.cores[k].cpu.time)
                 .min();
             let start = behind.unwrap_or(self.bus.now);
             let end = until.min(start.max(self.bus.now) + SLICE);
-            for (k, awake) in awake.into_iter().enumerate() {
-                if awake {
+            let first = self.bus.fabric.first();
+            for k in [first, 1 - first] {
+                if awake[k] {
                     self.run_core(k, end);
                 }
             }
@@ -227,13 +238,17 @@ impl Chip {
 
     /// Runs core `k` to cycle `end`, or until it sleeps or asks for something that concerns the whole chip.
     fn run_core(&mut self, k: usize, end: u64) {
-        let start = self.cores[k].time;
+        let start = self.cores[k].cpu.time;
         self.bus.active = k;
-        while self.cores[k].time < end && !self.stops_slice() {
-            if self.bus.ppb[k].active != 0 && self.bus.nvic[k].pending_and_enabled() != 0 {
-                self.preempt(k);
+        // The DMA went first where the program gave it priority.
+        let owed = std::mem::take(&mut self.bus.fabric.owed[k]);
+        self.cores[k].cpu.time += owed;
+        self.cores[k].cpu.waits += owed;
+        while self.cores[k].cpu.time < end && !self.stops_slice() {
+            self.cores[k].cpu.take_pending(&mut self.bus);
+            if self.waits_in_rom(k, end) {
+                continue;
             }
-            let before = self.bus.ppb[k].active;
             if self.profile.is_some() {
                 self.step_profiled(k, end);
             } else {
@@ -243,40 +258,37 @@ impl Chip {
             if std::mem::take(&mut self.bus.rom_called) {
                 self.call_rom(k);
             }
-            if before != self.bus.ppb[k].active {
-                // Exception entry and return set the event register (ARMv6-M B1.5.18).
-                self.bus.event[k] = true;
-                if self.cores[k].cpu.is_in_hardfault() {
-                    let pc = self.faulting_pc(k);
-                    self.bus
-                        .fault
-                        .get_or_insert(Fault::HardFault { core: k, pc });
-                }
+            if let Some(cause) = self.cores[k].cpu.fault.take() {
+                self.hard_fault(k, cause);
             }
-            if !self.bus.stale_code.is_empty() {
-                let stale = std::mem::take(&mut self.bus.stale_code);
-                for core in &mut self.cores {
-                    core.cpu.invalidate_decode_cache_entries(&stale);
-                }
-            }
-            if self.cores[k].cpu.is_halted() && self.bus.active_pc == cycles::STACKING {
-                // Locked up: the HardFault vector leads nowhere. Only WFI may halt a core.
-                let pc = self.faulting_pc(k);
-                let fault = Fault::HardFault { core: k, pc };
-                self.bus.fault.get_or_insert(fault);
-                break;
-            }
-            if self.cores[k].cpu.is_halted() || self.bus.wfe[k] {
-                self.bus.asleep[k] = true;
-                self.bus.wake_at[k] = None;
-                if self.bus.can_wake(k) {
-                    self.bus.wake_at[k] = Some(self.cores[k].time);
-                }
+            if self.cores[k].cpu.sleep != Sleep::Awake {
+                self.fall_asleep(k);
                 break;
             }
         }
-        let ran = self.cores[k].time - start;
+        let ran = self.cores[k].cpu.time - start;
         self.cores[k].busy += ran;
+    }
+
+    /// An instruction could not be completed.
+    #[cold]
+    fn hard_fault(&mut self, k: usize, cause: Cause) {
+        let cpu = &mut self.cores[k].cpu;
+        let pc = cpu.at;
+        if self.stop_at_hard_fault || !cpu.enter_hard_fault(&mut self.bus) {
+            let fault = Fault::HardFault { core: k, pc, cause };
+            self.bus.fault.get_or_insert(fault);
+        }
+        self.bus.attention = false;
+    }
+
+    fn fall_asleep(&mut self, k: usize) {
+        self.bus.asleep[k] = true;
+        self.bus.wfe[k] = self.cores[k].cpu.sleep == Sleep::Event;
+        self.bus.wake_at[k] = None;
+        if self.bus.can_wake(k) {
+            self.bus.wake_at[k] = Some(self.cores[k].cpu.time);
+        }
     }
 
     /// Something happened that the slice of neither core may go past.
@@ -287,39 +299,33 @@ impl Chip {
             || self.bus.fault.is_some()
     }
 
-    /// The inner loop: instructions until cycle `end`, a sleep, or an access that wants attention.
+    /// Instructions until cycle `end`, a sleep, or an access that wants attention.
     fn step(&mut self, k: usize, end: u64) {
-        let core = &mut self.cores[k];
-        let bus = &mut self.bus;
-        while core.time < end {
-            bus.core_time = core.time;
-            let mut charged = core.cpu.step(bus).max(1);
-            let (at, after) = (bus.active_pc, core.cpu.regs.pc());
-            if cycles::in_doubt(charged, at, after) {
-                charged = cycles::corrected(charged, at, after, || bus.halfword(at));
-            }
-            core.time += u64::from(charged);
-            if bus.attention || core.cpu.is_halted() {
-                core.time -= std::mem::take(&mut bus.single_cycle_accesses);
-                return;
-            }
+        let cpu = &mut self.cores[k].cpu;
+        if self.bus.shadow.is_some() {
+            cpu.run::<true>(&mut self.bus, end);
+        } else {
+            cpu.run::<false>(&mut self.bus, end);
         }
     }
 
     /// The same, an instruction at a time, counted.
     fn step_profiled(&mut self, k: usize, end: u64) {
-        let before = self.cores[k].time;
-        self.step(k, end.min(before + 1));
-        let cycles = self.cores[k].time - before;
+        let before = (
+            self.cores[k].cpu.time,
+            self.cores[k].cpu.waits,
+            self.bus.xip.misses[k],
+        );
+        self.step(k, end.min(before.0 + 1));
+        let cpu = &self.cores[k].cpu;
         if let Some(profile) = &mut self.profile {
-            profile[k].count(self.bus.active_pc, cycles);
+            let spent = profile::Spent {
+                cycles: cpu.time - before.0,
+                waits: cpu.waits - before.1,
+                misses: self.bus.xip.misses[k] - before.2,
+            };
+            profile[k].count(cpu.at, spent);
         }
-    }
-
-    /// The stacked return address of the exception a core has just entered.
-    fn faulting_pc(&mut self, k: usize) -> u32 {
-        let frame = self.cores[k].cpu.regs.msp;
-        self.bus.read32(frame.wrapping_add(24))
     }
 
     /// Cores whose wake-up came go on at the cycle it came.
@@ -334,9 +340,9 @@ impl Chip {
                     self.bus.wfe[k] = false;
                     self.bus.event[k] = false;
                 }
-                let core = &mut self.cores[k];
-                core.cpu.wake();
-                core.time = core.time.max(at);
+                let cpu = &mut self.cores[k].cpu;
+                cpu.sleep = Sleep::Awake;
+                cpu.time = cpu.time.max(at);
             }
         }
     }
@@ -344,9 +350,9 @@ impl Chip {
     fn after_slice(&mut self) {
         if self.bus.core1_forced_off {
             self.bus.core1_forced_off = false;
-            let core = &mut self.cores[1];
-            core.cpu = CortexM0Plus::with_id(1);
-            core.stopped = true;
+            let now = self.bus.now;
+            self.cores[1].restart(1, now);
+            self.cores[1].stopped = true;
             self.bus.asleep[1] = false;
             self.bus.wfe[1] = false;
             self.launch.clear();
@@ -388,13 +394,10 @@ impl Chip {
             self.launch.push(word);
             if let [_, _, _, vtor, sp, pc] = self.launch[..] {
                 self.launch.clear();
-                let starts = self.bus.now.max(self.cores[0].time);
+                let starts = self.bus.now.max(self.cores[0].cpu.time);
                 let core = &mut self.cores[1];
-                core.cpu = CortexM0Plus::with_id(1);
-                core.cpu.regs.msp = sp;
-                core.cpu.regs.r[13] = sp;
-                core.cpu.regs.set_pc(pc & !1);
-                core.time = starts;
+                core.restart(1, starts);
+                core.cpu.start(sp, pc);
                 core.stopped = false;
                 self.bus.ppb[1].vtor = vtor;
                 self.bus.asleep[1] = false;
@@ -404,57 +407,6 @@ impl Chip {
         }
         self.bus.event[0] = true;
         self.bus.update_lines();
-    }
-
-    /// Takes an interrupt of higher priority while a handler runs, which the CPU core itself does not.
-    #[cold]
-    fn preempt(&mut self, k: usize) {
-        let active = self.bus.ppb[k].active;
-        // NMI and HardFault cannot be preempted by interrupts.
-        if self.cores[k].cpu.regs.primask & 1 != 0 || active & 0b1100 != 0 {
-            return;
-        }
-        let Some((irq, priority)) = self.bus.nvic[k].highest_priority_pending() else {
-            return;
-        };
-        let running = (4..48u16)
-            .filter(|e| active & (1 << e) != 0)
-            .map(|e| match e {
-                16.. => self.bus.nvic[k].priority[usize::from(e - 16)] & 0xc0,
-                _ => self.bus.ppb[k].exception_priority(e) as u8,
-            })
-            .min();
-        if running.is_some_and(|running| priority >= running) {
-            return;
-        }
-        let regs = &self.cores[k].cpu.regs;
-        let sp = regs.r[13];
-        let frame = (sp - 32) & !4;
-        let aligned = u32::from(sp & 4 != 0) << 9;
-        let stacked = [
-            regs.r[0],
-            regs.r[1],
-            regs.r[2],
-            regs.r[3],
-            regs.r[12],
-            regs.r[14],
-            regs.pc(),
-            regs.xpsr & !(1 << 9) | aligned,
-        ];
-        for (i, word) in stacked.into_iter().enumerate() {
-            self.bus.write32(frame + 4 * i as u32, word);
-        }
-        let exception = 16 + u32::from(irq);
-        let vector = self.bus.read32(self.bus.ppb[k].vtor + 4 * exception);
-        let core = &mut self.cores[k];
-        core.cpu.regs.r[13] = frame;
-        core.cpu.regs.msp = frame;
-        core.cpu.regs.r[14] = 0xffff_fff1;
-        core.cpu.regs.xpsr = core.cpu.regs.xpsr & !0x1ff | exception;
-        core.cpu.regs.set_pc(vector & !1);
-        core.time += u64::from(cycles::EXCEPTION_ENTRY);
-        self.bus.ppb[k].mark_active(exception as u16);
-        self.bus.nvic[k].clear_pending(irq);
     }
 }
 

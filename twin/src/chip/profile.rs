@@ -1,4 +1,4 @@
-//! Cycles by instruction address: where a core spends its time.
+//! Cycles by instruction address: where a core spends its time, and how much of it waiting.
 
 use super::bus::SRAM;
 
@@ -7,39 +7,57 @@ const FLASH: usize = 2 << 20;
 const FLASH_BASE: u32 = 0x1000_0000;
 const SRAM_BASE: u32 = 0x2000_0000;
 
+/// What an instruction, a function or a core has spent.
+#[derive(Clone, Copy, Default, PartialEq, Eq, Debug)]
+pub struct Spent {
+    pub cycles: u64,
+    /// Of these, waiting for a port or for flash.
+    pub waits: u64,
+    /// Misses in the XIP cache.
+    pub misses: u64,
+}
+
+impl std::ops::AddAssign for Spent {
+    fn add_assign(&mut self, other: Self) {
+        self.cycles += other.cycles;
+        self.waits += other.waits;
+        self.misses += other.misses;
+    }
+}
+
 /// One core's table: a counter a halfword of flash and of SRAM.
 pub struct Profile {
-    flash: Vec<u64>,
-    sram: Vec<u64>,
-    elsewhere: u64,
+    flash: Vec<Spent>,
+    sram: Vec<Spent>,
+    elsewhere: Spent,
 }
 
 impl Profile {
     pub(super) fn new() -> Self {
         Self {
-            flash: vec![0; FLASH / 2],
-            sram: vec![0; SRAM / 2],
-            elsewhere: 0,
+            flash: vec![Spent::default(); FLASH / 2],
+            sram: vec![Spent::default(); SRAM / 2],
+            elsewhere: Spent::default(),
         }
     }
 
-    pub(super) fn count(&mut self, address: u32, cycles: u64) {
+    pub(super) fn count(&mut self, address: u32, spent: Spent) {
         let at = |base: u32| (address.wrapping_sub(base) / 2) as usize;
         let slot = match address >> 28 {
             1 => self.flash.get_mut(at(FLASH_BASE)),
             2 => self.sram.get_mut(at(SRAM_BASE)),
             _ => None,
         };
-        *slot.unwrap_or(&mut self.elsewhere) += cycles;
+        *slot.unwrap_or(&mut self.elsewhere) += spent;
     }
 
-    /// Every address at which cycles were spent, in order, with their number.
-    pub fn addresses(&self) -> impl Iterator<Item = (u32, u64)> + '_ {
-        let table = |base: u32, counts: &'_ [u64]| {
+    /// Every address at which cycles were spent, in order, with what was spent.
+    pub fn addresses(&self) -> impl Iterator<Item = (u32, Spent)> + '_ {
+        let table = |base: u32, counts: &'_ [Spent]| {
             counts
                 .iter()
                 .enumerate()
-                .filter(|(_, n)| **n > 0)
+                .filter(|(_, n)| n.cycles > 0)
                 .map(move |(i, n)| (base + 2 * i as u32, *n))
                 .collect::<Vec<_>>()
         };
@@ -48,8 +66,12 @@ impl Profile {
             .chain(table(SRAM_BASE, &self.sram))
     }
 
-    /// All cycles counted.
-    pub fn total(&self) -> u64 {
-        self.flash.iter().chain(&self.sram).sum::<u64>() + self.elsewhere
+    /// All that was counted.
+    pub fn total(&self) -> Spent {
+        let mut total = self.elsewhere;
+        for spent in self.flash.iter().chain(&self.sram) {
+            total += *spent;
+        }
+        total
     }
 }

@@ -10,11 +10,9 @@
 //! | 100 | lookup function |
 //! | 200+4n | function n of [`FUNCTIONS`] |
 
-use super::bus::Fault;
+use super::Chip;
+use super::bus::{Fault, ROM};
 use super::flash::{ERASE_SECTOR_US, PAGE, PROGRAM_PAGE_US, SECTOR};
-use super::{Chip, Core};
-use rp2040_emu::bus::invalidation_regions::XIP;
-use rp2040_emu::core::CoreBus;
 
 const LOOKUP: u32 = 0x100;
 const FIRST: u32 = 0x200;
@@ -28,14 +26,8 @@ const CALL_CYCLES: u64 = 20;
 /// Cycles a byte of the memory functions takes (word loops of the ROM: about 5 cycles for 4 bytes, plus overhead).
 const CYCLES_PER_WORD: u64 = 5;
 
-/// `SEV`, which every other halfword of the ROM holds: a core that branches there executes one, and that is how the call is noticed.
-const SEV: [u8; 2] = [0x40, 0xbf];
-
 /// Fills in the ROM.
 pub fn write_header(rom: &mut [u8]) {
-    for halfword in rom.chunks_exact_mut(2) {
-        halfword.copy_from_slice(&SEV);
-    }
     rom[0x10..0x14].copy_from_slice(b"Mu\x01\x02");
     rom[0x14..0x16].copy_from_slice(&0x0080u16.to_le_bytes());
     rom[0x16..0x18].copy_from_slice(&0x00c0u16.to_le_bytes());
@@ -47,7 +39,7 @@ impl Chip {
     #[cold]
     pub(super) fn call_rom(&mut self, k: usize) {
         let core = &self.cores[k];
-        let address = self.bus.active_pc;
+        let address = core.cpu.regs.pc();
         let argument = [0, 1, 2, 3].map(|n| core.cpu.regs.r[n]);
         let mut cycles = CALL_CYCLES;
         let result = if address == LOOKUP {
@@ -77,13 +69,31 @@ impl Chip {
                 }
             }
         };
-        let Core { cpu, time, .. } = &mut self.cores[k];
+        let core = &mut self.cores[k];
         if let Some(value) = result {
-            cpu.regs.r[0] = value;
+            core.cpu.regs.r[0] = value;
         }
-        let back = cpu.regs.r[14];
-        cpu.regs.set_pc(back & !1);
-        *time += cycles;
+        core.rom_until = Some(core.cpu.time + cycles);
+    }
+
+    /// A ROM function of core `k` still takes its time, at most until `end`, or has just returned. Interrupts are taken meanwhile, and
+    /// their handlers run.
+    #[inline]
+    pub(super) fn waits_in_rom(&mut self, k: usize, end: u64) -> bool {
+        let core = &mut self.cores[k];
+        let Some(until) = core.rom_until else {
+            return false;
+        };
+        if core.cpu.regs.pc() as usize >= ROM {
+            return false;
+        }
+        core.cpu.time = core.cpu.time.max(until.min(end));
+        if core.cpu.time >= until {
+            core.rom_until = None;
+            let back = core.cpu.regs.r[14];
+            core.cpu.go(back);
+        }
+        true
     }
 
     fn perform(
@@ -103,9 +113,8 @@ impl Chip {
                 if !self.bus.flash.erase(a[0] as usize, a[1] as usize) {
                     return Err(range);
                 }
-                self.forget_flash_code();
                 let sectors = u64::from(a[1]) / SECTOR as u64;
-                (None, sectors * ERASE_SECTOR_US * us)
+                (None, self.flash_works(k, sectors * ERASE_SECTOR_US * us))
             }
             b"RP" => {
                 let data: Vec<u8> = (0..a[2]).map(|i| self.bus.read8(a[1] + i)).collect();
@@ -115,11 +124,23 @@ impl Chip {
                         len: a[2],
                     });
                 }
-                self.forget_flash_code();
                 let pages = u64::from(a[2]) / PAGE as u64;
-                (None, pages * PROGRAM_PAGE_US * us)
+                (None, self.flash_works(k, pages * PROGRAM_PAGE_US * us))
             }
-            b"IF" | b"EX" | b"FC" | b"CX" => (None, 0),
+            b"IF" | b"EX" => {
+                self.bus.xip.command_mode = true;
+                (None, 0)
+            }
+            b"FC" => {
+                let now = self.cores[k].cpu.time;
+                self.bus.xip.flush(now);
+                (None, 0)
+            }
+            b"CX" => {
+                self.bus.xip.command_mode = false;
+                self.bus.flash.enter_plain_reads();
+                (None, 0)
+            }
             b"MS" | b"S4" => {
                 for i in 0..a[2] {
                     self.bus.write8(a[0].wrapping_add(i), a[1] as u8);
@@ -127,7 +148,7 @@ impl Chip {
                 (None, words(a[2]))
             }
             b"MC" | b"C4" => {
-                self.bus.core_time = self.cores[k].time;
+                self.bus.core_time = self.cores[k].cpu.time;
                 for i in 0..a[2] {
                     let byte = self.bus.read8(a[1].wrapping_add(i));
                     self.bus.write8(a[0].wrapping_add(i), byte);
@@ -146,9 +167,9 @@ impl Chip {
         })
     }
 
-    fn forget_flash_code(&mut self) {
-        for core in &mut self.cores {
-            core.cpu.invalidate_decode_cache_regions(XIP);
-        }
+    /// The flash is busy for `cycles`, which is what the call takes.
+    fn flash_works(&mut self, k: usize, cycles: u64) -> u64 {
+        self.bus.xip.busy_until = self.cores[k].cpu.time + cycles;
+        cycles
     }
 }

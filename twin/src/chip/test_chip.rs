@@ -3,7 +3,6 @@
 use super::bus::Fault;
 use super::flash::Flash;
 use super::{Chip, Halt};
-use rp2040_emu::core::CoreBus;
 
 pub const RESETS: u32 = 0x4000_c000;
 pub const CLK_REF_CTRL: u32 = 0x4000_8030;

@@ -1,20 +1,64 @@
-//! What the cores see: memory fast, everything else through the peripherals at the core's own time.
+//! What the cores see outside SRAM, and what tests and the ROM's functions see of everything.
+//!
+//! A core's own fetches, loads and stores of SRAM are in `cpu/access.rs`. Here: flash, ROM, peripherals, each with the cycles its access
+//! takes (table there).
 
-use super::{Bus, CODE_GRANULE, ROM, SRAM, SRAM_BASE};
-use rp2040_emu::bus::ppb::Ppb;
-use rp2040_emu::core::{CoreBus, Nvic};
+use super::fabric::{APB_PORT, FAST_PORT, ROM_PORT};
+use super::{Bus, Cause, Fault, ROM, SRAM, SRAM_BASE};
+
+/// Data cycles of a read and of a write through the APB bridge: two of APB, one more for a read, two more for a write, whose data the
+/// bridge must wait for (datasheet 2.1.3).
+const APB_READ: u64 = 3;
+const APB_WRITE: u64 = 4;
+/// Bytes of one bank of the alias at 2100_0000, where banks 0 to 3 follow each other (datasheet 2.6.2).
+const BANK: u32 = 0x1_0000;
+
+/// What answers at an address outside SRAM.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Place {
+    Rom,
+    Flash,
+    /// XIP_CTRL.
+    Cache,
+    /// The SSI's registers and APB peripherals.
+    Apb,
+    Fast,
+    SingleCycle,
+    Private,
+    Nothing,
+}
+
+fn place(address: u32) -> Place {
+    match address >> 24 {
+        0x00 if (address as usize) < ROM => Place::Rom,
+        0x10..=0x13 => Place::Flash,
+        0x14 => Place::Cache,
+        0x18 | 0x40 => Place::Apb,
+        0x50 => Place::Fast,
+        0xd0 => Place::SingleCycle,
+        0xe0 => Place::Private,
+        _ => Place::Nothing,
+    }
+}
 
 impl Bus {
+    /// Offset of an address into SRAM, through either of its windows.
     #[inline]
     pub(super) fn sram_offset(&self, address: u32, size: usize) -> Option<usize> {
         let at = address.wrapping_sub(SRAM_BASE) as usize;
-        (at <= SRAM - size).then_some(at)
+        if at <= SRAM - size {
+            return Some(at);
+        }
+        (address >> 18 == 0x2100_0000 >> 18).then(|| {
+            let (bank, within) = ((address / BANK) & 3, address % BANK);
+            ((within >> 2) * 16 + bank * 4 + (within & 3)) as usize
+        })
     }
 
     #[inline]
     pub(super) fn memory(&self, address: u32, size: usize) -> Option<&[u8]> {
         match address >> 24 {
-            0x20 => self
+            0x20 | 0x21 => self
                 .sram_offset(address, size)
                 .map(|at| &self.sram[at..at + size]),
             0x10..=0x13 => {
@@ -26,27 +70,6 @@ impl Bus {
         }
     }
 
-    /// An instruction's halfword, read without any effect.
-    pub fn halfword(&self, address: u32) -> u16 {
-        self.memory(address & !1, 2)
-            .map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]))
-    }
-
-    /// A core reads memory: counts core 1's use of flash and remembers where code lies in SRAM.
-    #[inline(always)]
-    pub(super) fn core_memory<const SIZE: usize>(&mut self, address: u32) -> Option<[u8; SIZE]> {
-        if let Some(at) = self.sram_offset(address, SIZE) {
-            if address & !3 == self.active_pc & !3 {
-                self.note_code(at);
-            }
-            return self.sram[at..at + SIZE].try_into().ok();
-        }
-        if address >> 28 == 1 && self.active == 1 {
-            self.note_core1_xip(address);
-        }
-        self.memory(address, SIZE)?.try_into().ok()
-    }
-
     #[cold]
     pub(super) fn note_core1_xip(&mut self, address: u32) {
         if self.core1_xip == 0 {
@@ -55,185 +78,166 @@ impl Bus {
         self.core1_xip += 1;
     }
 
-    pub(super) fn note_code(&mut self, at: usize) {
-        self.code[at / CODE_GRANULE] = true;
-        let next = ((at + 2) / CODE_GRANULE).min(self.code.len() - 1);
-        self.code[next] = true;
-    }
-
-    #[inline]
-    pub(super) fn note_write(&mut self, at: usize, address: u32) {
-        if self.code[at / CODE_GRANULE] {
-            self.stale_code.push(address & !3);
-            self.stale_code.push((address & !3) + 2);
-            self.attention = true;
-        }
-    }
-
-    #[inline(never)]
-    pub(super) fn slow_read(&mut self, address: u32) -> u32 {
-        match address >> 28 {
-            4 | 5 | 0xd | 0xe => {}
-            1 if matches!(address >> 24, 0x14 | 0x18) => {}
-            _ => {
-                self.bus_fault = Some(address);
-                return 0;
+    /// A core reads outside SRAM at cycle `time`: the value and the data cycles.
+    pub fn core_read(
+        &mut self,
+        core: usize,
+        address: u32,
+        size: u32,
+        time: u64,
+    ) -> Result<(u32, u64), Cause> {
+        let lanes = |word: u32| match size {
+            1 => word >> (8 * (address & 3)) & 0xff,
+            2 => word >> (8 * (address & 2)) & 0xffff,
+            _ => word,
+        };
+        let memory = |bus: &Self| {
+            let bytes = bus.memory(address & !3, 4)?;
+            let word = u32::from_le_bytes(bytes.try_into().ok()?);
+            Some(lanes(word))
+        };
+        let nothing = Cause::Bus { address };
+        match place(address) {
+            Place::Flash => {
+                let wait = self.xip_access(core, address, time)?;
+                Ok((memory(self).ok_or(nothing)?, 1 + wait))
+            }
+            Place::Rom => {
+                let wait = self.fabric.claim(core, ROM_PORT, time);
+                Ok((memory(self).ok_or(nothing)?, 1 + wait))
+            }
+            Place::Nothing if address >> 24 == 0x21 => {
+                let at = self.sram_offset(address, size as usize).ok_or(nothing)?;
+                let wait = self.fabric.claim(core, super::sram_port(at), time);
+                Ok((memory(self).ok_or(nothing)?, 1 + wait))
+            }
+            Place::Nothing if address >> 24 == 0x15 => {
+                self.not_modelled("read", address);
+                Ok((0, 1))
+            }
+            Place::Nothing => Err(nothing),
+            Place::Cache => {
+                let value = self.read_peripheral_at(address & !3, time);
+                let wait = self
+                    .xip
+                    .read(address & 0xfc, time)
+                    .map_or(0, |(_, wait)| wait);
+                Ok((lanes(value), 1 + wait))
+            }
+            place => {
+                let (port, cycles) = match place {
+                    Place::Apb => (Some(APB_PORT), APB_READ),
+                    Place::Fast => (Some(FAST_PORT), 1),
+                    Place::Private => (None, 1),
+                    _ => (None, 0),
+                };
+                let wait = port.map_or(0, |port| self.fabric.claim(core, port, time));
+                let value = self.read_peripheral_at(address & !3, time + wait);
+                Ok((lanes(value), cycles + wait))
             }
         }
+    }
+
+    /// A core writes outside SRAM at cycle `time`: the data cycles.
+    pub fn core_write(
+        &mut self,
+        core: usize,
+        address: u32,
+        value: u32,
+        size: u32,
+        time: u64,
+    ) -> Result<u64, Cause> {
+        let (port, cycles) = match place(address) {
+            Place::Apb => (Some(APB_PORT), APB_WRITE),
+            Place::Fast => (Some(FAST_PORT), 1),
+            Place::Private | Place::Cache => (None, 1),
+            Place::SingleCycle => (None, 0),
+            Place::Flash => {
+                self.fault.get_or_insert(Fault::FlashWrite { address });
+                return Err(Cause::Bus { address });
+            }
+            Place::Nothing if address >> 24 == 0x21 => {
+                let at = self.sram_offset(address, size as usize);
+                let at = at.ok_or(Cause::Bus { address })?;
+                let wait = self.fabric.claim(core, super::sram_port(at), time);
+                self.write_sram(at, value, size as usize);
+                return Ok(1 + wait);
+            }
+            Place::Nothing if address >> 24 == 0x15 => {
+                self.not_modelled("write", address);
+                return Ok(1);
+            }
+            Place::Rom | Place::Nothing => return Err(Cause::Bus { address }),
+        };
+        let wait = port.map_or(0, |port| self.fabric.claim(core, port, time));
+        self.write_peripheral_at(address, value, size as usize, time + wait);
+        Ok(cycles + wait)
+    }
+
+    pub(super) fn write_sram(&mut self, at: usize, value: u32, size: usize) {
+        self.sram[at..at + size].copy_from_slice(&value.to_le_bytes()[..size]);
+        self.watch_write(at, size);
+    }
+
+    fn read_peripheral_at(&mut self, address: u32, time: u64) -> u32 {
         self.attention = true;
-        self.single_cycle_accesses += u64::from(address >> 28 == 0xd);
-        self.advance(self.core_time);
+        self.core_time = time;
+        self.advance(time);
         let value = self.peripheral_read(address);
         self.update_lines();
         value
     }
 
-    #[inline(never)]
-    pub(super) fn slow_write(&mut self, address: u32, value: u32, size: usize) {
-        match address >> 28 {
-            4 | 5 | 0xd | 0xe => {}
-            1 if matches!(address >> 24, 0x14 | 0x18) => {}
-            _ => {
-                self.bus_fault = Some(address);
-                return;
-            }
-        }
+    fn write_peripheral_at(&mut self, address: u32, value: u32, size: usize, time: u64) {
         self.attention = true;
-        self.single_cycle_accesses += u64::from(address >> 28 == 0xd);
-        self.advance(self.core_time);
+        self.core_time = time;
+        self.advance(time);
         if size == 4 {
             self.peripheral_write(address, value);
         } else {
             self.peripheral_write_narrow(address, value, size);
         }
     }
-}
 
-impl CoreBus for Bus {
-    #[inline]
-    fn read8(&mut self, address: u32) -> u8 {
-        match self.core_memory::<1>(address) {
-            Some([byte]) => byte,
-            None => (self.slow_read(address & !3) >> (8 * (address & 3))) as u8,
+    // ---- for tests, benches and the ROM's functions: no cycles, no refusal ----------------------------------------------------
+
+    /// Reads a byte of memory or of a peripheral.
+    pub fn read8(&mut self, address: u32) -> u8 {
+        (self.read32(address & !3) >> (8 * (address & 3))) as u8
+    }
+
+    /// Reads a halfword.
+    pub fn read16(&mut self, address: u32) -> u16 {
+        (self.read32(address & !3) >> (8 * (address & 2))) as u16
+    }
+
+    /// Reads a word.
+    pub fn read32(&mut self, address: u32) -> u32 {
+        match self.memory(address, 4) {
+            Some(bytes) => bytes.try_into().map_or(0, u32::from_le_bytes),
+            None => self.read_peripheral_at(address, self.core_time),
         }
     }
 
-    #[inline]
-    fn read16(&mut self, address: u32) -> u16 {
-        match self.core_memory(address) {
-            Some(bytes) => u16::from_le_bytes(bytes),
-            None => (self.slow_read(address & !3) >> (8 * (address & 2))) as u16,
+    /// Writes a byte of SRAM or of a peripheral.
+    pub fn write8(&mut self, address: u32, value: u8) {
+        self.write(address, u32::from(value), 1);
+    }
+
+    /// Writes a halfword.
+    pub fn write16(&mut self, address: u32, value: u16) {
+        self.write(address, u32::from(value), 2);
+    }
+
+    /// Writes a word.
+    pub fn write32(&mut self, address: u32, value: u32) {
+        self.write(address, value, 4);
+    }
+
+    fn write(&mut self, address: u32, value: u32, size: usize) {
+        match self.sram_offset(address, size) {
+            Some(at) => self.write_sram(at, value, size),
+            None => self.write_peripheral_at(address, value, size, self.core_time),
         }
-    }
-
-    #[inline]
-    fn read32(&mut self, address: u32) -> u32 {
-        match self.core_memory(address) {
-            Some(bytes) => u32::from_le_bytes(bytes),
-            None => self.slow_read(address),
-        }
-    }
-
-    #[inline]
-    fn write8(&mut self, address: u32, value: u8) {
-        match self.sram_offset(address, 1) {
-            Some(at) => {
-                self.sram[at] = value;
-                self.note_write(at, address);
-            }
-            None => self.slow_write(address, u32::from(value), 1),
-        }
-    }
-
-    #[inline]
-    fn write16(&mut self, address: u32, value: u16) {
-        match self.sram_offset(address, 2) {
-            Some(at) => {
-                self.sram[at..at + 2].copy_from_slice(&value.to_le_bytes());
-                self.note_write(at, address);
-            }
-            None => self.slow_write(address, u32::from(value), 2),
-        }
-    }
-
-    #[inline]
-    fn write32(&mut self, address: u32, value: u32) {
-        match self.sram_offset(address, 4) {
-            Some(at) => {
-                self.sram[at..at + 4].copy_from_slice(&value.to_le_bytes());
-                self.note_write(at, address);
-            }
-            None => self.slow_write(address, value, 4),
-        }
-    }
-
-    #[inline]
-    fn set_active_pc(&mut self, pc: u32) {
-        self.active_pc = pc;
-        if pc >> 28 == 1 && self.active == 1 {
-            self.note_core1_xip(pc);
-        }
-    }
-
-    #[inline]
-    fn bus_fault(&self) -> bool {
-        self.bus_fault.is_some()
-    }
-
-    fn bus_fault_addr(&self) -> u32 {
-        self.bus_fault.unwrap_or(0)
-    }
-
-    fn clear_bus_fault(&mut self) {
-        self.bus_fault = None;
-    }
-
-    #[inline]
-    fn ppb(&self, core: usize) -> &Ppb {
-        &self.ppb[core]
-    }
-
-    #[inline]
-    fn ppb_mut(&mut self, core: usize) -> &mut Ppb {
-        // Exceptions are entered and left through here.
-        self.attention = true;
-        &mut self.ppb[core]
-    }
-
-    #[inline]
-    fn nvic(&self, core: usize) -> &Nvic {
-        &self.nvic[core]
-    }
-
-    #[inline]
-    fn nvic_mut(&mut self, core: usize) -> &mut Nvic {
-        &mut self.nvic[core]
-    }
-
-    #[inline]
-    fn active_core(&self) -> usize {
-        self.active
-    }
-
-    fn event_flag(&self, core: usize) -> bool {
-        self.event[core]
-    }
-
-    fn consume_event_flag(&mut self, core: usize) -> bool {
-        std::mem::replace(&mut self.event[core], false)
-    }
-
-    fn set_wfe_waiting(&mut self, core: usize, waiting: bool) {
-        self.wfe[core] = waiting;
-        self.attention = true;
-    }
-
-    fn signal_sev(&mut self) {
-        if (self.active_pc as usize) < ROM {
-            self.rom_called = true;
-            self.attention = true;
-            return;
-        }
-        self.signal_event();
     }
 }

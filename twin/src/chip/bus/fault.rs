@@ -1,5 +1,7 @@
 //! Why the chip stops or starts again.
 
+use super::xip::Closed;
+
 /// Why the chip stopped. Each names the address and where the program was.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Fault {
@@ -23,8 +25,12 @@ pub enum Fault {
     RomFunction(String),
     #[error("boot2 fails its CRC-32: the flash holds no bootable image")]
     Boot2,
-    #[error("core {core} is in HardFault at {pc:#010x}")]
-    HardFault { core: usize, pc: u32 },
+    #[error("core {core} is in HardFault at {pc:#010x}: {cause}")]
+    HardFault { core: usize, pc: u32, cause: Cause },
+    #[error("flash is read at {address:#010x} while {why}")]
+    FlashClosed { address: u32, why: Closed },
+    #[error("a write to flash at {address:#010x}, which only drops a line of the cache")]
+    FlashWrite { address: u32 },
     #[error("flash operation outside the chip or not aligned: {offset:#x}+{len:#x}")]
     FlashRange { offset: u32, len: u32 },
     #[error(
@@ -35,6 +41,33 @@ pub enum Fault {
     OpenInput(usize),
     #[error("the system clock stopped (clk_sys has no running source)")]
     ClockStopped,
+}
+
+/// Why a core cannot complete an instruction. On the chip each is a HardFault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Cause {
+    #[error("access of {address:#010x} is not aligned")]
+    Unaligned { address: u32 },
+    #[error("nothing answers at {address:#010x}")]
+    Bus { address: u32 },
+    #[error("nothing can be executed at {address:#010x}")]
+    Fetch { address: u32 },
+    #[error("{half:#06x} is no instruction")]
+    Undefined { half: u16 },
+    #[error("a branch to {target:#010x}, whose bit 0 is clear")]
+    NotThumb { target: u32 },
+    #[error("BKPT without a debugger")]
+    Breakpoint,
+    #[error("SVC where it cannot preempt")]
+    SupervisorCall,
+    #[error("return from an exception to {value:#010x}, which does not fit what is active")]
+    ExceptionReturn { value: u32 },
+    #[error("the vector of exception {number} is {handler:#010x}, whose bit 0 is clear")]
+    Vector { number: u16, handler: u32 },
+    #[error("the stack pointer {sp:#010x} is below the stack's limit")]
+    StackLimit { sp: u32 },
+    #[error("unprivileged execution, which the twin does not model")]
+    Unprivileged,
 }
 
 /// What made the chip start again.

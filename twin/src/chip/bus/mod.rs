@@ -8,27 +8,31 @@
 //!
 //! What is not modelled is an [`Fault`] that names the register, never a silent zero. So is the use of a peripheral held in reset.
 //!
-//! Not modelled: bus contention, XIP cache misses (cycle counts are optimistic for code in flash), SRAM banks.
+//! What an access costs: the table in `cpu/access.rs`, `fabric.rs` for ports that two masters want, `xip.rs` for flash.
 
 mod blocks;
 mod cores;
+mod fabric;
 mod fault;
 mod lines;
 mod peripherals;
 mod ppb;
 mod registers;
+mod shadow;
 mod transfers;
 mod world;
+mod xip;
 
 use blocks::reset;
-pub use fault::{Fault, ResetCause};
+pub use fabric::{Fabric, sram_port};
+pub use fault::{Cause, Fault, ResetCause};
+pub use shadow::{Reader, Shadow, Uninitialised};
 pub use world::TriggerNet;
-
-use rp2040_emu::bus::ppb::Ppb;
-use rp2040_emu::core::Nvic;
+pub use xip::{Closed, Xip};
 
 use super::adc::Adc;
 use super::clocks::Clocks;
+use super::cpu::ppb::{Nvic, Ppb};
 use super::crystal::Crystal;
 use super::dma::Dma;
 use super::flash::Flash;
@@ -46,9 +50,7 @@ use super::usb_host::UsbHost;
 
 /// SRAM: four striped 64 KiB banks and two of 4 KiB (datasheet 2.6.2).
 pub const SRAM: usize = 264 * 1024;
-const SRAM_BASE: u32 = 0x2000_0000;
-/// Granule in which the bus remembers where code was fetched from SRAM.
-const CODE_GRANULE: usize = 256;
+pub const SRAM_BASE: u32 = 0x2000_0000;
 /// Mask ROM.
 pub const ROM: usize = 16 * 1024;
 
@@ -69,7 +71,11 @@ mod irq {
 pub struct Bus {
     pub rom: Vec<u8>,
     pub flash: Flash,
-    pub sram: Vec<u8>,
+    pub sram: Box<[u8; SRAM]>,
+    pub fabric: Fabric,
+    pub xip: Xip,
+    /// Which bytes of SRAM were written, while that is watched.
+    pub shadow: Option<Box<Shadow>>,
     /// Peripherals have been advanced to this cycle.
     pub now: u64,
     /// Time of the core that is executing, and which one it is.
@@ -80,9 +86,7 @@ pub struct Bus {
     pub attention: bool,
     /// The last instruction was in ROM.
     pub rom_called: bool,
-    /// Accesses to the single-cycle I/O port in the last instruction: a load or store there costs 1, not 2 (Cortex-M0+ TRM, table 3.1).
-    pub single_cycle_accesses: u64,
-    /// Instructions core 1 executed, and data it read, from flash since it was started by the program.
+    /// Words core 1 fetched or read from flash since it was started by the program.
     pub core1_xip: u64,
     /// The address of the first of them.
     pub core1_xip_first: u32,
@@ -90,15 +94,11 @@ pub struct Bus {
     pub nvic: [Nvic; 2],
     pub event: [bool; 2],
     pub event_time: u64,
-    pub wfe: [bool; 2],
-    bus_fault: Option<u32>,
     pub fault: Option<Fault>,
     pub reset_request: Option<ResetCause>,
     pub core1_forced_off: bool,
     /// Core 0 pushed a word to a core 1 that still waits in ROM.
     pub core1_launching: bool,
-    pub stale_code: Vec<u32>,
-    code: Vec<bool>,
     lines: [u32; 2],
     /// Interrupt lines may have changed since they were computed.
     lines_dirty: bool,
@@ -106,8 +106,9 @@ pub struct Bus {
     quiet_until: u64,
     /// Cycle at which a sleeping core's wake-up became pending.
     pub wake_at: [Option<u64>; 2],
-    /// Set for cores that sleep; the bus then watches their lines.
+    /// Set for cores that sleep; the bus then watches their lines. An event alone wakes those of `wfe`.
     pub asleep: [bool; 2],
+    pub wfe: [bool; 2],
     dma_at: u64,
     pub pio: [Pio; 2],
     pub dma: Dma,
@@ -127,7 +128,6 @@ pub struct Bus {
     psm_off: u32,
     pub psm_wdsel: u32,
     chip_reset: u32,
-    storage: [u32; 8],
     sys_hz: u64,
     /// Picoseconds at cycle `since`, when the system clock last changed.
     time_ps: u128,
@@ -146,33 +146,32 @@ impl Bus {
         let mut bus = Self {
             rom: vec![0; ROM],
             flash,
-            sram: vec![0; SRAM],
+            sram: Box::new([0; SRAM]),
+            fabric: Fabric::default(),
+            xip: Xip::default(),
+            shadow: None,
             now: 0,
             core_time: 0,
             active: 0,
             active_pc: 0,
             attention: false,
             rom_called: false,
-            single_cycle_accesses: 0,
             core1_xip: 0,
             core1_xip_first: 0,
             ppb: [Ppb::new(), Ppb::new()],
             nvic: [Nvic::new(), Nvic::new()],
             event: [false; 2],
             event_time: 0,
-            wfe: [false; 2],
-            bus_fault: None,
             fault: None,
             reset_request: None,
             core1_forced_off: false,
             core1_launching: false,
-            stale_code: Vec::new(),
-            code: vec![false; SRAM / CODE_GRANULE],
             lines: [0; 2],
             lines_dirty: true,
             quiet_until: 0,
             wake_at: [None; 2],
             asleep: [false; 2],
+            wfe: [false; 2],
             dma_at: u64::MAX,
             pio: [Pio::new(), Pio::new()],
             dma: Dma::default(),
@@ -192,7 +191,6 @@ impl Bus {
             psm_off: 0,
             psm_wdsel: 0,
             chip_reset: 1 << 8,
-            storage: [0; 8],
             sys_hz: 0,
             time_ps: 0,
             since: 0,
@@ -212,6 +210,8 @@ impl Bus {
         self.psm_off = 0;
         self.psm_wdsel = 0;
         self.flash.reset();
+        self.xip.reset(self.now);
+        self.fabric.priority = 0;
         self.clocks.reset();
         self.sio = Sio::default();
         self.watchdog.reset(self.now);
@@ -227,17 +227,14 @@ impl Bus {
         self.ppb = [Ppb::new(), Ppb::new()];
         self.nvic = [Nvic::new(), Nvic::new()];
         self.event = [false; 2];
-        self.wfe = [false; 2];
         self.wake_at = [None; 2];
         self.asleep = [false; 2];
+        self.wfe = [false; 2];
         self.lines = [0; 2];
         self.lines_dirty = true;
         self.quiet_until = 0;
-        self.storage = [0; 8];
         self.core1_forced_off = false;
         self.core1_launching = false;
-        self.code.fill(false);
-        self.stale_code.clear();
         self.usb_host.device_reset();
         self.resolve_pins();
         self.clocks_changed();
@@ -454,7 +451,7 @@ impl Bus {
     /// A sleeping core has a reason to go on.
     pub fn can_wake(&self, core: usize) -> bool {
         let interrupt = self.nvic[core].pending_and_enabled() != 0
-            || self.ppb[core].icsr & (1 << 28 | 1 << 26) != 0;
+            || self.ppb[core].icsr & (1 << 31 | 1 << 28 | 1 << 26) != 0;
         // WFE with interrupts masked needs SEVONPEND, which no image uses; an enabled pending interrupt wakes it as WFI.
         interrupt || (self.wfe[core] && self.event[core])
     }

@@ -55,7 +55,7 @@ impl Bus {
         true
     }
 
-    pub(super) fn signal_event(&mut self) {
+    pub fn signal_event(&mut self) {
         self.event = [true; 2];
         self.event_time = self.core_time.max(self.now);
         for core in 0..2 {

@@ -99,7 +99,7 @@ impl Bus {
                 0x4002_4000 => self.clocks.read_xosc(offset),
                 0x4002_8000 => self.clocks.read_pll(0, offset),
                 0x4002_c000 => self.clocks.read_pll(1, offset),
-                0x4003_0000 if offset <= 4 => Some(if offset == 4 { 1 } else { self.storage[0] }),
+                0x4003_0000 => self.fabric.read(offset),
                 0x4003_4000 => self.uart[0].read(offset, now),
                 0x4003_8000 => self.uart[1].read(offset, now),
                 0x4004_4000 | 0x4004_8000 => {
@@ -204,7 +204,7 @@ impl Bus {
                 self.clocks_changed();
                 return ok;
             }
-            0x4003_0000 if offset == 0 => self.storage[0] = value,
+            0x4003_0000 => return self.fabric.write(offset, value),
             0x4003_4000 => return self.uart[0].write(offset, value, now),
             0x4003_8000 => return self.uart[1].write(offset, value, now),
             0x4004_4000 | 0x4004_8000 => {
@@ -263,14 +263,7 @@ impl Bus {
     pub(super) fn read_flash_interface(&mut self, address: u32) -> Option<u32> {
         match address >> 24 {
             0x18 => self.flash.read_ssi(address & 0xff),
-            0x14 => match address & 0xff {
-                // XIP_CTRL reset value: enabled, error on writes to bad regions.
-                0x00 => Some(3),
-                // FLUSH reads 0 when done; STAT: flush ready, FIFO empty.
-                0x04 => Some(0),
-                0x08 => Some(3),
-                _ => None,
-            },
+            0x14 => Some(self.xip.read(address & 0xff, self.now)?.0),
             _ => None,
         }
     }
@@ -278,7 +271,7 @@ impl Bus {
     pub(super) fn write_flash_interface(&mut self, address: u32, value: u32) -> bool {
         match address >> 24 {
             0x18 => self.flash.write_ssi(address & 0xff, value),
-            0x14 => matches!(address & 0xff, 0x00 | 0x04),
+            0x14 => self.xip.write(address & 0xff, value, self.now),
             _ => false,
         }
     }

@@ -1,6 +1,8 @@
 //! DMA transfers: the bus makes them, since it owns the memories.
 
-use super::Bus;
+use super::fabric::{APB_PORT, FAST_PORT};
+use super::xip::DMA_MASTER;
+use super::{Bus, sram_port};
 
 impl Bus {
     pub(super) fn dreq(&self, number: u32) -> bool {
@@ -30,6 +32,9 @@ impl Bus {
             return;
         };
         let c = self.dma.channels[n];
+        let wait = self
+            .dma_waits(c.read_addr, false)
+            .max(self.dma_waits(c.write_addr, true));
         match c.size() {
             1 => {
                 let byte = self.load(c.read_addr & !3) >> (8 * (c.read_addr & 3));
@@ -50,7 +55,21 @@ impl Bus {
             }
         }
         self.dma.transferred(n);
-        self.dma_at = self.now + 1;
+        self.dma_at = self.now + 1 + wait;
+    }
+
+    /// Cycles the DMA waits for the port of `address`, or for flash.
+    fn dma_waits(&mut self, address: u32, write: bool) -> u64 {
+        let now = self.now;
+        match address >> 24 {
+            0x10..=0x13 if !write => self.xip_access(DMA_MASTER, address, now).unwrap_or(0),
+            0x40 => self.fabric.claim_for_dma(APB_PORT, now, write),
+            0x50 => self.fabric.claim_for_dma(FAST_PORT, now, write),
+            _ => match self.sram_offset(address, 1) {
+                Some(at) => self.fabric.claim_for_dma(sram_port(at), now, write),
+                None => 0,
+            },
+        }
     }
 
     /// A word as a bus master other than the cores reads it.
@@ -63,14 +82,14 @@ impl Bus {
 
     pub(super) fn store(&mut self, address: u32, value: u32) {
         match self.sram_offset(address, 4) {
-            Some(at) => self.sram[at..at + 4].copy_from_slice(&value.to_le_bytes()),
+            Some(at) => self.write_sram(at, value, 4),
             None => self.peripheral_write(address, value),
         }
     }
 
     pub(super) fn store_narrow(&mut self, address: u32, value: u32, size: usize) {
         match self.sram_offset(address, size) {
-            Some(at) => self.sram[at..at + size].copy_from_slice(&value.to_le_bytes()[..size]),
+            Some(at) => self.write_sram(at, value, size),
             None => self.peripheral_write_narrow(address, value, size),
         }
     }

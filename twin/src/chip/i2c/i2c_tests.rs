@@ -3,7 +3,6 @@
 use super::I2cTarget;
 use crate::chip::Chip;
 use crate::chip::test_chip::{FOREVER, chip, run};
-use rp2040_emu::core::CoreBus;
 use std::sync::{Arc, Mutex};
 
 const I2C1: u32 = 0x4004_8000;
