@@ -1,6 +1,7 @@
 //! The nine instructions (datasheet 3.4) as a state machine executes them.
 
 use super::Pio;
+use super::outputs::Target;
 use crate::chip::pins::Pins;
 
 /// What a tick did to the program flow.
@@ -22,6 +23,7 @@ impl Pio {
         self.sm[n].last = instruction;
         if from_exec {
             self.sm[n].exec = None;
+            self.sm[n].exec_stalled = false;
         }
         let i = u32::from(instruction);
         let side_bits = self.sm[n].pinctrl >> 29;
@@ -36,9 +38,7 @@ impl Pio {
             let value_bits = side_bits - side_opt;
             let enabled = side_opt == 0 || side >> value_bits != 0;
             if enabled && value_bits > 0 {
-                let base = (self.sm[n].pinctrl >> 10) & 0x1f;
-                let to_dirs = self.sm[n].execctrl & (1 << 29) != 0;
-                self.write_pins(base, value_bits, side, to_dirs);
+                self.side_set(n, side, value_bits);
             }
         }
         // Autopull refills the OSR in the background of every other instruction (datasheet 3.5.4.2).
@@ -50,10 +50,15 @@ impl Pio {
             Flow::Stall => {
                 if from_exec {
                     sm.exec = Some(instruction);
+                    sm.exec_stalled = true;
                 }
                 return;
             }
-            Flow::Jump(to) => sm.pc = to & 0x1f,
+            Flow::Jump(to) => {
+                sm.pc = to & 0x1f;
+                // A jump forced upon an `IRQ WAIT` leaves it for good.
+                sm.irq_raised = false;
+            }
             Flow::Next if from_exec => {}
             Flow::Next => {
                 let top = (sm.execctrl >> 12) & 0x1f;
@@ -143,7 +148,7 @@ impl Pio {
                 let flag = Self::flag_index(n, index);
                 let set = (self.irq >> flag) & 1;
                 if set == 1 && polarity == 1 {
-                    self.irq &= !(1 << flag);
+                    self.irq_clear |= 1 << flag;
                     self.visible = true;
                 }
                 set
@@ -204,11 +209,8 @@ impl Pio {
         self.background_pull(n);
         let sm = &mut self.sm[n];
         match (i >> 5) & 7 {
-            0 | 4 => {
-                let base = sm.pinctrl & 0x1f;
-                let count = (sm.pinctrl >> 20) & 0x3f;
-                self.write_pins(base, count, value, (i >> 5) & 7 == 4);
-            }
+            0 => self.out_pins(n, value, Target::Levels),
+            4 => self.out_pins(n, value, Target::Directions),
             1 => sm.x = value,
             2 => sm.y = value,
             5 => return Flow::Jump(value),
@@ -289,11 +291,7 @@ impl Pio {
             _ => source,
         };
         match (i >> 5) & 7 {
-            0 => {
-                let base = sm.pinctrl & 0x1f;
-                let count = (sm.pinctrl >> 20) & 0x3f;
-                self.write_pins(base, count, value, false);
-            }
+            0 => self.mov_pins(n, value, Target::Levels),
             1 => sm.x = value,
             2 => sm.y = value,
             4 => sm.exec = Some(value as u16),
@@ -314,19 +312,19 @@ impl Pio {
     fn raise_irq(&mut self, n: usize, i: u32) -> Flow {
         let flag = 1 << Self::flag_index(n, i & 0x1f);
         if i & 0x40 != 0 {
-            self.irq &= !flag;
+            self.irq_clear |= flag;
             self.visible = true;
             return Flow::Next;
         }
         if i & 0x20 == 0 {
-            self.irq |= flag;
+            self.irq_set |= flag;
             self.visible = true;
             return Flow::Next;
         }
         let sm = &mut self.sm[n];
         if !sm.irq_raised {
             sm.irq_raised = true;
-            self.irq |= flag;
+            self.irq_set |= flag;
             self.visible = true;
             return Flow::Stall;
         }
@@ -343,37 +341,10 @@ impl Pio {
         match (i >> 5) & 7 {
             1 => sm.x = value,
             2 => sm.y = value,
-            d @ (0 | 4) => {
-                let base = (sm.pinctrl >> 5) & 0x1f;
-                let count = (sm.pinctrl >> 26) & 7;
-                self.write_pins(base, count, value, d == 4);
-            }
+            0 => self.set_pins(n, value, Target::Levels),
+            4 => self.set_pins(n, value, Target::Directions),
             _ => {}
         }
         Flow::Next
-    }
-
-    /// Drives `count` pins from `base` upward (wrapping at 32) with the low bits of `value`.
-    fn write_pins(&mut self, base: u32, count: u32, value: u32, dirs: bool) {
-        if count == 0 {
-            return;
-        }
-        let low = if count >= 32 {
-            u32::MAX
-        } else {
-            (1 << count) - 1
-        };
-        let mask = low.rotate_left(base);
-        let bits = (value & low).rotate_left(base);
-        let target = if dirs {
-            &mut self.pad_oe
-        } else {
-            &mut self.pad_out
-        };
-        let driven = (*target & !mask) | bits;
-        if driven != *target {
-            *target = driven;
-            self.visible = true;
-        }
     }
 }

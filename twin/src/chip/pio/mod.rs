@@ -21,6 +21,9 @@
 
 mod instructions;
 mod observed;
+mod outputs;
+mod registers;
+mod sampler;
 mod state_machine;
 
 use super::pins::Pins;
@@ -34,6 +37,11 @@ pub struct Pio {
     enabled: u32,
     fdebug: u32,
     irq: u32,
+    /// Flags that this cycle sets and clears; the state machines see them from the next one on.
+    irq_set: u32,
+    irq_clear: u32,
+    /// State machines with OUT_STICKY.
+    sticky: u32,
     sync_bypass: u32,
     inte: [u32; 2],
     intf: [u32; 2],
@@ -63,6 +71,9 @@ impl Pio {
             enabled: 0,
             fdebug: 0,
             irq: 0,
+            irq_set: 0,
+            irq_clear: 0,
+            sticky: 0,
             sync_bypass: 0,
             inte: [0; 2],
             intf: [0; 2],
@@ -74,7 +85,7 @@ impl Pio {
         }
     }
 
-    /// The cycle of the next tick of any enabled state machine.
+    /// The cycle of the next tick of any state machine.
     pub fn next_tick(&self) -> u64 {
         self.soonest
     }
@@ -84,6 +95,8 @@ impl Pio {
         for (n, sm) in self.sm.iter().enumerate() {
             if self.enabled & (1 << n) != 0 {
                 self.soonest = self.soonest.min(sm.next);
+            } else if sm.exec.is_some() {
+                self.soonest = self.soonest.min(sm.retry_at);
             }
         }
     }
@@ -93,7 +106,9 @@ impl Pio {
     pub fn run(&mut self, limit: u64, pins: &mut Pins) -> u64 {
         self.visible = false;
         while self.soonest <= limit {
-            if self.enabled.is_power_of_two() {
+            let alone =
+                self.enabled.is_power_of_two() && self.sm.iter().all(|sm| sm.exec.is_none());
+            if alone {
                 self.sample(self.enabled.trailing_zeros() as usize, limit, pins);
                 if self.soonest > limit {
                     break;
@@ -101,12 +116,9 @@ impl Pio {
             }
             let now = self.soonest;
             for n in 0..4 {
-                if self.enabled & (1 << n) != 0 && self.sm[n].next == now {
-                    let period = self.sm[n].period();
-                    self.sm[n].next = now + period;
-                    self.tick(n, now, pins);
-                }
+                self.take_turn(n, now, pins);
             }
+            self.settle_flags();
             self.find_soonest();
             if self.visible {
                 return now;
@@ -115,51 +127,34 @@ impl Pio {
         limit
     }
 
+    /// State machine `n` in cycle `now`: a tick if it is due. A disabled one still works off a forced instruction, every cycle
+    /// (datasheet 3.7, EXECCTRL: a stalled one is latched until it completes).
+    fn take_turn(&mut self, n: usize, now: u64, pins: &mut Pins) {
+        let sm = &mut self.sm[n];
+        if self.enabled & (1 << n) != 0 {
+            if self.sticky & (1 << n) != 0 {
+                self.assert_kept(n);
+            }
+            let sm = &mut self.sm[n];
+            if sm.next == now {
+                sm.next = now + sm.period();
+                self.tick(n, now, pins);
+            }
+        } else if let Some(forced) = sm.exec {
+            sm.retry_at = now + 1;
+            self.execute(n, forced, true, now, pins);
+        }
+    }
+
+    /// Flags set and cleared in a cycle are seen from the next one on; a set wins over a clear (assumed).
+    fn settle_flags(&mut self) {
+        self.irq =
+            self.irq & !std::mem::take(&mut self.irq_clear) | std::mem::take(&mut self.irq_set);
+    }
+
     /// Whether others could see a change since the last call or the start of the last [`Pio::run`].
     pub fn take_visible(&mut self) -> bool {
         std::mem::take(&mut self.visible)
-    }
-
-    /// A shortcut for a lone state machine that does nothing but `in pins, n` for ever: its ticks up to, not including, the one that fills
-    /// the shift register. It gives what [`Pio::tick`] would (a test compares them) in a quarter of the time.
-    fn sample(&mut self, n: usize, limit: u64, pins: &mut Pins) {
-        let sm = &mut self.sm[n];
-        let instruction = self.program[sm.pc as usize];
-        let bits = u32::from(instruction & 0x1f);
-        let loops = (sm.execctrl >> 12) & 0x1f == sm.pc && (sm.execctrl >> 7) & 0x1f == sm.pc;
-        // `in pins, bits` without delay or side-set, wrapped onto itself, whole divider, shifting left.
-        if instruction & 0xffe0 != 0x4000
-            || bits == 0
-            || !loops
-            || sm.delay != 0
-            || sm.exec.is_some()
-            || sm.pinctrl >> 29 != 0
-            || sm.clkdiv & 0xff00 != 0
-            || sm.clkdiv >> 16 == 0
-            || sm.shiftctrl & (1 << 18) != 0
-            || sm.autopull()
-        {
-            return;
-        }
-        let (base, period) = ((sm.pinctrl >> 15) & 0x1f, u64::from(sm.clkdiv >> 16));
-        let room = if sm.autopush() {
-            // The tick that would fill it is left to the full model.
-            (sm.push_threshold().saturating_sub(1 + sm.isr_count)) / bits
-        } else {
-            u32::MAX
-        };
-        let mut left = room;
-        while left > 0 && sm.next <= limit {
-            let levels = pins.synced(sm.next, self.sync_bypass).rotate_right(base);
-            sm.isr = sm.isr << bits | levels & ((1 << bits) - 1);
-            sm.isr_count = (sm.isr_count + bits).min(32);
-            sm.next += period;
-            left -= 1;
-        }
-        if left < room {
-            sm.last = instruction;
-        }
-        self.soonest = sm.next;
     }
 
     /// One state machine executes one divider tick.
@@ -176,171 +171,6 @@ impl Pio {
             None => self.program[self.sm[n].pc as usize],
         };
         self.execute(n, instruction, from_exec.is_some(), now, pins);
-    }
-    /// RX FIFO not empty: the DREQ of `DREQ_PIOn_RXm`.
-    pub fn rx_ready(&self, n: usize) -> bool {
-        self.sm[n].rx.len > 0
-    }
-
-    /// TX FIFO not full: the DREQ of `DREQ_PIOn_TXm`.
-    pub fn tx_ready(&self, n: usize) -> bool {
-        !self.sm[n].tx_full()
-    }
-
-    fn intr(&self) -> u32 {
-        let mut bits = (self.irq & 0xf) << 8;
-        for (n, sm) in self.sm.iter().enumerate() {
-            bits |= u32::from(sm.rx.len > 0) << n;
-            bits |= u32::from(!sm.tx_full()) << (4 + n);
-        }
-        bits
-    }
-
-    /// The two interrupt outputs.
-    pub fn irq_line(&self, line: usize) -> bool {
-        self.inte[line] | self.intf[line] != 0
-            && (self.intr() & self.inte[line] | self.intf[line]) != 0
-    }
-
-    /// Reads a register; `None` if it is not modelled.
-    pub fn read(&mut self, offset: u32) -> Option<u32> {
-        Some(match offset {
-            0x000 => self.enabled,
-            0x004 => {
-                let mut v = 0;
-                for (n, sm) in self.sm.iter().enumerate() {
-                    v |= u32::from(sm.rx_full()) << n;
-                    v |= u32::from(sm.rx.len == 0) << (8 + n);
-                    v |= u32::from(sm.tx_full()) << (16 + n);
-                    v |= u32::from(sm.tx.len == 0) << (24 + n);
-                }
-                v
-            }
-            0x008 => self.fdebug,
-            0x00c => {
-                let level = |n: usize| (self.sm[n].tx.len | self.sm[n].rx.len << 4) as u32;
-                (0..4).fold(0, |v, n| v | level(n) << (8 * n))
-            }
-            0x020..=0x02c => {
-                let n = ((offset - 0x20) / 4) as usize;
-                match self.sm[n].rx.pop() {
-                    Some(word) => word,
-                    None => {
-                        self.fdebug |= 1 << (8 + n);
-                        0
-                    }
-                }
-            }
-            0x030 => self.irq,
-            0x038 => self.sync_bypass,
-            // The chip has 30 pads; the two highest bits read as zero.
-            0x03c => self.pad_out & 0x3fff_ffff,
-            0x040 => self.pad_oe & 0x3fff_ffff,
-            // 32 instructions, 4 state machines, FIFOs 4 deep.
-            0x044 => (32 << 16) | (4 << 8) | 4,
-            0x0c8..=0x124 => {
-                let sm = &self.sm[((offset - 0xc8) / 0x18) as usize];
-                match (offset - 0xc8) % 0x18 {
-                    0x00 => sm.clkdiv,
-                    0x04 => sm.execctrl | u32::from(sm.exec.is_some()) << 31,
-                    0x08 => sm.shiftctrl,
-                    0x0c => sm.pc,
-                    0x10 => match sm.exec {
-                        Some(i) => u32::from(i),
-                        None => u32::from(self.program[sm.pc as usize]),
-                    },
-                    _ => sm.pinctrl,
-                }
-            }
-            0x128 => self.intr(),
-            0x12c => self.inte[0],
-            0x130 => self.intf[0],
-            0x134 => self.intr() & self.inte[0] | self.intf[0],
-            0x138 => self.inte[1],
-            0x13c => self.intf[1],
-            0x140 => self.intr() & self.inte[1] | self.intf[1],
-            _ => return None,
-        })
-    }
-
-    /// Writes a register at cycle `now`; `value` is already resolved for the atomic aliases where the register is plain storage.
-    /// Returns whether the register is modelled.
-    pub fn write(&mut self, offset: u32, value: u32, now: u64, pins: &mut Pins) -> bool {
-        match offset {
-            0x000 => self.write_ctrl(value, now),
-            0x008 => self.fdebug &= !value,
-            0x010..=0x01c => {
-                let n = ((offset - 0x10) / 4) as usize;
-                if self.sm[n].tx_full() {
-                    self.fdebug |= 1 << (16 + n);
-                } else {
-                    self.sm[n].tx.push(value);
-                }
-            }
-            0x030 => self.irq &= !value,
-            0x034 => self.irq |= value & 0xff,
-            0x038 => self.sync_bypass = value,
-            0x048..=0x0c4 => self.program[((offset - 0x48) / 4) as usize] = value as u16,
-            // OUT_STICKY and INLINE_OUT_EN of EXECCTRL are not modelled.
-            0x0c8..=0x124 if (offset - 0xc8) % 0x18 == 0x04 && value & (3 << 17) != 0 => {
-                return false;
-            }
-            0x0c8..=0x124 => self.write_sm(offset, value, now, pins),
-            0x12c => self.inte[0] = value & 0xfff,
-            0x130 => self.intf[0] = value & 0xfff,
-            0x138 => self.inte[1] = value & 0xfff,
-            0x13c => self.intf[1] = value & 0xfff,
-            // Read-only: the bus ignores the write, as the chip does.
-            0x004 | 0x00c | 0x03c | 0x040 | 0x044 | 0x128 | 0x134 | 0x140 => {}
-            _ => return false,
-        }
-        true
-    }
-
-    fn write_ctrl(&mut self, value: u32, now: u64) {
-        for n in 0..4 {
-            let bit = 1 << n;
-            if value & (bit << 4) != 0 {
-                self.sm[n].restart();
-            }
-            let newly = value & bit != 0 && self.enabled & bit == 0;
-            if value & (bit << 8) != 0 {
-                self.sm[n].fraction = 0;
-            }
-            if newly {
-                self.enabled_at[n] = now;
-            }
-            // The first tick is one cycle after the enable.
-            if newly || value & (bit << 8) != 0 {
-                self.sm[n].next = now + 1;
-            }
-        }
-        self.enabled = value & 0xf;
-        self.find_soonest();
-    }
-
-    fn write_sm(&mut self, offset: u32, value: u32, now: u64, pins: &mut Pins) {
-        let n = ((offset - 0xc8) / 0x18) as usize;
-        let sm = &mut self.sm[n];
-        match (offset - 0xc8) % 0x18 {
-            0x00 => sm.clkdiv = value,
-            0x04 => sm.execctrl = value & 0x7fff_ffff,
-            0x08 => {
-                // Changing a join bit clears both FIFOs (datasheet 3.7, SHIFTCTRL).
-                if (sm.shiftctrl ^ value) >> 30 != 0 {
-                    sm.tx.clear();
-                    sm.rx.clear();
-                }
-                sm.shiftctrl = value;
-            }
-            0x10 => {
-                sm.exec = Some(value as u16);
-                sm.delay = 0;
-                self.execute(n, value as u16, true, now, pins);
-            }
-            0x14 => sm.pinctrl = value,
-            _ => {}
-        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! One state machine: its registers, FIFOs and shift registers.
 
+use super::outputs::PinWrite;
+
 /// Depth of one FIFO in words; joined it is twice that (datasheet 3.2.4).
 const FIFO_DEPTH: usize = 4;
 
@@ -58,6 +60,8 @@ pub(super) struct StateMachine {
     pub(super) delay: u32,
     /// An instruction from `OUT EXEC`, `MOV EXEC` or `SMn_INSTR` that runs before the program goes on.
     pub(super) exec: Option<u16>,
+    /// It has stalled at least once, which EXEC_STALLED shows.
+    pub(super) exec_stalled: bool,
     /// `IRQ WAIT` has raised its flag and now waits for it to be cleared.
     pub(super) irq_raised: bool,
     /// The last instruction executed; `SMn_INSTR` reads it back.
@@ -66,6 +70,10 @@ pub(super) struct StateMachine {
     pub(super) next: u64,
     /// Fraction accumulated by the divider, in 1/256 cycle.
     pub(super) fraction: u32,
+    /// Cycle at which a disabled state machine tries a forced instruction again.
+    pub(super) retry_at: u64,
+    /// Pin writes that OUT_STICKY asserts in every cycle: levels, directions.
+    pub(super) kept: [PinWrite; 2],
 }
 
 impl StateMachine {
@@ -86,10 +94,13 @@ impl StateMachine {
             rx: Fifo::default(),
             delay: 0,
             exec: None,
+            exec_stalled: false,
             irq_raised: false,
             last: 0,
             next: 0,
             fraction: 0,
+            retry_at: 0,
+            kept: Default::default(),
         }
     }
 
@@ -99,19 +110,37 @@ impl StateMachine {
         self.osr_count = 32;
         self.delay = 0;
         self.exec = None;
+        self.exec_stalled = false;
         self.irq_raised = false;
+        self.kept = Default::default();
+    }
+
+    /// CLKDIV as cycles a tick times 256.
+    fn divisor(&self) -> u64 {
+        match self.clkdiv >> 8 {
+            0..=0xff => 65_536 << 8,
+            n => u64::from(n),
+        }
+    }
+
+    /// Dividers run on while their state machine is disabled (datasheet 3.7, CLKDIV_RESTART): finds the first edge after `now`.
+    pub(super) fn catch_up(&mut self, now: u64) {
+        if self.next > now {
+            return;
+        }
+        // Edge j after the known one comes floor((fraction + j × divisor) / 256) cycles later.
+        let wanted = (now + 1 - self.next) << 8;
+        let edges = (wanted - u64::from(self.fraction)).div_ceil(self.divisor());
+        let sum = u64::from(self.fraction) + edges * self.divisor();
+        self.next += sum >> 8;
+        self.fraction = (sum & 0xff) as u32;
     }
 
     /// Cycles to the tick after this one: the integer part, plus one whenever the fraction carries.
     pub(super) fn period(&mut self) -> u64 {
-        let int = match self.clkdiv >> 16 {
-            0 => 65_536,
-            n => n,
-        };
-        self.fraction += (self.clkdiv >> 8) & 0xff;
-        let carry = self.fraction >> 8;
-        self.fraction &= 0xff;
-        u64::from(int + carry)
+        let sum = u64::from(self.fraction) + self.divisor();
+        self.fraction = (sum & 0xff) as u32;
+        sum >> 8
     }
 
     pub(super) fn tx_depth(&self) -> usize {
