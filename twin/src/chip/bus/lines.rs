@@ -18,6 +18,12 @@ impl Bus {
 
     /// Recomputes all pads from what the peripherals drive, then lets everyone on a shared wire answer.
     pub(super) fn resolve_pins(&mut self) {
+        self.resolve_pins_at(self.now);
+    }
+
+    /// The same for a change that reaches the pads at cycle `at`.
+    pub(super) fn resolve_pins_at(&mut self, at: u64) {
+        self.pins.now = at;
         self.drive_pins();
         for _ in 0..ROUNDS {
             if !self.settle_i2c(0) & !self.settle_i2c(1) {

@@ -313,6 +313,7 @@ impl Bus {
         if to <= self.now {
             return;
         }
+        self.pins.now = to;
         if to < self.quiet_until {
             self.now = to;
             return;
@@ -332,8 +333,9 @@ impl Bus {
                 limit = self.pio[first].run(bound, &mut self.pins);
                 visible = self.pio[first].take_visible();
                 self.now = self.now.max(limit);
-                if visible && self.pio[first].pad_oe != 0 {
-                    self.resolve_pins();
+                if self.pio[first].take_pads_changed() {
+                    // What a state machine writes in one cycle is on the pads in the next.
+                    self.resolve_pins_at(self.now + 1);
                 }
             }
             self.now = self.now.max(limit);

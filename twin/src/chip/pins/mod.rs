@@ -20,13 +20,14 @@
 //!
 //! PULSES is the one fast input: its edges come from `playback` with their cycles. A reader at cycle `c` sees the level two cycles
 //! earlier, behind the input synchroniser (datasheet 3.5.6.3); so it does with what is attached and changes a level at a cycle of its own
-//! ([`Pins::change_at`]). Every other pin changes only between the slices in which the chip runs. A pin that drives itself is read back
-//! without the synchroniser's delay.
+//! ([`Pins::change_at`]), and with every other pin, one that the chip drives itself included. Inputs of UART, SPI and I2C and the
+//! interrupt bits see those others at once.
 
 mod choices;
 pub mod functions;
 mod playback;
 mod registers;
+mod synchroniser;
 
 use std::collections::VecDeque;
 
@@ -36,6 +37,7 @@ use crate::front_end::trigger_level::TriggerLevel;
 use choices::Choices;
 use functions as f;
 use playback::Playback;
+use synchroniser::Synchroniser;
 
 /// Number of pads in bank 0.
 pub const PADS: usize = 30;
@@ -82,6 +84,13 @@ pub struct Pins {
     /// System clock, and the threshold behind its RC.
     hz: u64,
     trigger_level: TriggerLevel,
+    /// Pins with edges of their own cycles; the others pass through this.
+    edged: u32,
+    sync: Synchroniser,
+    /// Cycle from which readers see [`Pins::seen`].
+    settled_at: u64,
+    /// The cycle at which whatever happens here happens; the bus keeps it.
+    pub now: u64,
 }
 
 /// What the peripherals offer to the multiplexer: levels and output enables, spread over the pins that can carry them.
@@ -125,6 +134,7 @@ impl Pins {
         crystal: &Crystal,
     ) {
         self.driven |= 1 << pin;
+        self.edged |= 1 << pin;
         self.external &= !(1 << pin);
         let mut playback = Playback::new(source, pin, start, start_ps, crystal.clone());
         playback.clock_changed(start, self.hz);
@@ -178,6 +188,7 @@ impl Pins {
     /// Something outside changes the level of `pin` at cycle `at`, which is not before the last such cycle.
     pub fn change_at(&mut self, pin: u32, level: bool, at: u64) {
         self.driven |= 1 << pin;
+        self.edged |= 1 << pin;
         self.changes.push_back((at, pin, level));
         self.note_next_visible();
     }
@@ -233,7 +244,16 @@ impl Pins {
         if now >= self.next_visible || bypass != 0 {
             self.pass_edges(now, bypass);
         }
+        if now < self.settled_at {
+            return self.on_their_way(now, bypass);
+        }
         self.seen
+    }
+
+    #[cold]
+    fn on_their_way(&self, now: u64, bypass: u32) -> u32 {
+        let at_once = bypass | self.edged;
+        self.seen & at_once | self.sync.seen(now, self.seen) & !at_once
     }
 
     #[cold]
@@ -314,8 +334,13 @@ impl Pins {
         let pulled = self.pulled_up_outside | up & (!down | self.level);
         let outside = (self.external & self.driven) | (pulled & !self.driven);
         self.level = ((self.out & self.oe) | (outside & !self.oe)) & !self.held_low;
-        let before = self.chosen.irq.apply(self.seen);
+        let was = self.seen;
+        let before = self.chosen.irq.apply(was);
         self.seen = self.visible();
+        if self.seen != was {
+            self.sync.change(self.now, was);
+            self.settled_at = self.sync.settled_at();
+        }
         let sensed = self.chosen.irq.apply(self.seen);
         let mut changed = before ^ sensed;
         while changed != 0 {

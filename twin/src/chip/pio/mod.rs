@@ -50,6 +50,8 @@ pub struct Pio {
     pub pad_oe: u32,
     /// Something others can see changed during the last tick or register access.
     visible: bool,
+    /// An output level or enable changed.
+    pads_changed: bool,
     /// Cycle at which the earliest enabled state machine ticks; `u64::MAX` if none is enabled.
     soonest: u64,
     /// Cycle at which each state machine was last enabled.
@@ -80,6 +82,7 @@ impl Pio {
             pad_out: 0,
             pad_oe: 0,
             visible: false,
+            pads_changed: false,
             soonest: u64::MAX,
             enabled_at: [0; 4],
         }
@@ -157,6 +160,11 @@ impl Pio {
         std::mem::take(&mut self.visible)
     }
 
+    /// Whether an output level or enable changed since the last call.
+    pub fn take_pads_changed(&mut self) -> bool {
+        std::mem::take(&mut self.pads_changed)
+    }
+
     /// One state machine executes one divider tick.
     fn tick(&mut self, n: usize, now: u64, pins: &mut Pins) {
         if self.sm[n].delay > 0 {
@@ -177,3 +185,6 @@ impl Pio {
 #[cfg(test)]
 #[path = "pio_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+mod output_tests;

@@ -103,6 +103,7 @@ impl Pio {
         if driven != *pads {
             *pads = driven;
             self.visible = true;
+            self.pads_changed = true;
         }
     }
 

@@ -234,16 +234,3 @@ fn the_pad_registers_show_thirty_pads() {
     assert_eq!(pio.read(0x03c), Some(0x3fff_ffff));
     assert_eq!(pio.read(0x040), Some(0x3fff_ffff));
 }
-
-#[test]
-fn sticky_and_inline_enabled_outputs_are_refused_rather_than_ignored() {
-    let (mut pio, mut pins) = (Pio::new(), Pins::new());
-    assert!(pio.write(0x0cc, 0x1f << 12, 0, &mut pins));
-    assert!(!pio.write(0x0cc, 1 << 17, 0, &mut pins));
-    assert!(!pio.write(0x0cc, 1 << 18, 0, &mut pins));
-    assert_eq!(
-        pio.read(0x0cc),
-        Some(0x1f << 12),
-        "the register keeps its value"
-    );
-}
