@@ -25,6 +25,7 @@ use twin::chip::pio::Pio;
 const CTRL: u32 = 0x000;
 const TXF0: u32 = 0x010;
 const RXF0: u32 = 0x020;
+const INPUT_SYNC_BYPASS: u32 = 0x038;
 const INSTR_MEM0: u32 = 0x048;
 const SM0_EXECCTRL: u32 = 0x0cc;
 const SM0_SHIFTCTRL: u32 = 0x0d0;
@@ -93,6 +94,8 @@ impl Machine {
         machine.write(SM0_EXECCTRL, execctrl, 0);
         machine.write(SM0_SHIFTCTRL, shiftctrl, 0);
         machine.write(SM0_PINCTRL, pinctrl, 0);
+        // The peer has no synchroniser.
+        machine.write(INPUT_SYNC_BYPASS, u32::MAX, 0);
         machine.resolve();
         // Restart empties the shift registers' counts; enable.
         machine.write(CTRL, 1 << 4 | 1, 0);
