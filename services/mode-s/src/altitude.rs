@@ -7,8 +7,9 @@
 //! ```
 //! Gillham: D2 D4 A1 A2 A4 B1 B2 B4 count 500 ft in reflected (Gray) code, C1 C2 C4 count 100 ft 1-5 in a code of their own that runs
 //! backwards in every other 500 ft. Source: ICAO Annex 10 Volume IV (the AC field and the table of Mode C pulses). It reserves M = 1
-//! for metric altitudes without saying how they count; "The 1090 Megahertz Riddle" reads metres in binary, and so does this. No
-//! transponder in the logs at hand sends one.
+//! for metric altitudes without saying how they count; "The 1090 Megahertz Riddle" reads metres in binary. They have a name of their
+//! own here and are never taken for the aircraft's altitude: of the 27 replies with M = 1 in the Los Angeles log of adsb_deku none is
+//! within 1000 ft of the altitude its aircraft told just before and after; all are noise whose parity happened to fit.
 
 /// Altitude in feet; which one (pressure or geometric) is told by the field that holds it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -21,14 +22,6 @@ pub struct Ac13(pub u16);
 /// The altitude field of an airborne position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ac12(pub u16);
-
-impl AltitudeFt {
-    /// Metres, up to ±600 000, in feet of 0.3048 m, rounded to nearest.
-    pub(crate) const fn of_metres(metres: i32) -> AltitudeFt {
-        // 1 / 0.3048 = 1250 / 381.
-        AltitudeFt((metres * 1_250 + 190).div_euclid(381))
-    }
-}
 
 /// The metric flag in AC13.
 const M: u16 = 1 << 6;
@@ -43,18 +36,24 @@ impl Ac12 {
 }
 
 impl Ac13 {
-    /// The altitude, if the field holds one: not 0, no impossible Gillham code.
+    /// The altitude, if the field holds one: not 0, not metric, no impossible Gillham code.
     pub fn altitude(self) -> Option<AltitudeFt> {
-        if self.0 & 0x1FFF == 0 {
+        if self.0 & 0x1FFF == 0 || self.0 & M != 0 {
             None
-        } else if self.0 & M != 0 {
-            let metres = (self.0 & 0x1F80) >> 1 | self.0 & 0x3F;
-            Some(AltitudeFt::of_metres(i32::from(metres)))
         } else if self.0 & Q != 0 {
             let steps = (self.0 & 0x1F80) >> 2 | (self.0 & 0x20) >> 1 | self.0 & 0xF;
             Some(AltitudeFt(25 * i32::from(steps) - 1000))
         } else {
             gillham(self.0)
+        }
+    }
+
+    /// The metric altitude in metres, 0-4095, where M says that the field holds one.
+    pub const fn metres(self) -> Option<u16> {
+        if self.0 & M == 0 {
+            None
+        } else {
+            Some((self.0 & 0x1F80) >> 1 | self.0 & 0x3F)
         }
     }
 }
@@ -102,18 +101,19 @@ mod tests {
     }
 
     #[test]
-    fn absent_altitudes_are_none() {
+    fn absent_and_metric_altitudes_are_none() {
         assert_eq!(Ac13(0).altitude(), None);
         assert_eq!(Ac12(0).altitude(), None);
+        assert_eq!(Ac13(M | Q | 0x100).altitude(), None);
     }
 
     #[test]
     fn metric_altitudes_are_metres_in_binary() {
         for metres in 0..4096u16 {
             let code = (metres & 0xFC0) << 1 | M | metres & 0x3F;
-            let feet = (f64::from(metres) / 0.3048).round() as i32;
-            assert_eq!(Ac13(code).altitude(), Some(AltitudeFt(feet)), "{metres} m");
+            assert_eq!(Ac13(code).metres(), Some(metres));
         }
+        assert_eq!(Ac13(0x06A2).metres(), None);
     }
 
     #[test]

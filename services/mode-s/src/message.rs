@@ -47,6 +47,8 @@ pub enum Body {
         acas: AcasReply,
         /// Pressure altitude.
         altitude: Option<AltitudeFt>,
+        /// Metric altitude, metres; `altitude` is then `None`.
+        metres: Option<u16>,
         /// MV of DF16: see [`Message::coordination`].
         mv: Option<MeBits>,
     },
@@ -58,6 +60,8 @@ pub enum Body {
         control: ReplyControl,
         /// Pressure altitude.
         altitude: Option<AltitudeFt>,
+        /// Metric altitude, metres; `altitude` is then `None`.
+        metres: Option<u16>,
         /// MB of DF20: which register it copies must be guessed.
         mb: Option<MeBits>,
     },
@@ -193,13 +197,15 @@ fn body(frame: &Frame, df: Df) -> Body {
                 sensitivity_level: frame.bits(9, 11) as u8,
                 reply_information: frame.bits(14, 17) as u8,
             },
-            altitude: Ac13(frame.bits(20, 32) as u16).altitude(),
+            altitude: ac(frame).altitude(),
+            metres: ac(frame).metres(),
             mv: long(frame.me()),
         },
         4 | 20 => Body::AltitudeReply {
             flight_status: FlightStatus(field),
             control: control(frame),
-            altitude: Ac13(frame.bits(20, 32) as u16).altitude(),
+            altitude: ac(frame).altitude(),
+            metres: ac(frame).metres(),
             mb: long(frame.me()),
         },
         5 | 21 => Body::IdentityReply {
@@ -224,6 +230,10 @@ fn body(frame: &Frame, df: Df) -> Body {
         24 => Body::CommD(CommD::decode(frame)),
         _ => Body::NotDecoded,
     }
+}
+
+fn ac(frame: &Frame) -> Ac13 {
+    Ac13(frame.bits(20, 32) as u16)
 }
 
 fn control(frame: &Frame) -> ReplyControl {

@@ -86,6 +86,7 @@ fn altitude_reply() {
             flight_status: FlightStatus(0),
             control: ReplyControl::default(),
             altitude: Some(AltitudeFt(10_000)),
+            metres: None,
             mb: None,
         }
     );
@@ -226,6 +227,7 @@ fn air_air_surveillance_tells_ground_and_altitude() {
                 on_ground,
                 acas: AcasReply::default(),
                 altitude: Some(AltitudeFt(10_000)),
+                metres: None,
                 mv: None,
             }
         );

@@ -3,6 +3,7 @@
 //! | field | from | to | unit |
 //! |---|---|---|---|
 //! | altitude, by AC | -1 200 | 126 700 | ft (Gillham; 50 175 in steps of 25 ft) |
+//! | metric altitude | 0 | 4 095 | m |
 //! | altitude selected | -1 000 | 101 300 | ft |
 //! | ground speed in the air | 0 | 5 781 | kt (both components at their end, supersonic) |
 //! | ground speed on the surface | 0 | 175 | kt |
@@ -83,7 +84,13 @@ pub fn possible(message: &Message) -> Result<(), Impossible> {
         advisory_is_possible(&advisory)?;
     }
     match &message.body {
-        Body::AirAir { acas, altitude, .. } => {
+        Body::AirAir {
+            acas,
+            altitude,
+            metres,
+            ..
+        } => {
+            may_be_within("metric altitude", *metres, 0, 4_095)?;
             within("SL", acas.sensitivity_level, 0, 7)?;
             within("RI", acas.reply_information, 0, 15)?;
             may_be_within("greatest airspeed", acas.greatest_airspeed_kt(), 75, 1_200)?;
@@ -93,8 +100,10 @@ pub fn possible(message: &Message) -> Result<(), Impossible> {
             flight_status,
             control,
             altitude,
+            metres,
             ..
         } => {
+            may_be_within("metric altitude", *metres, 0, 4_095)?;
             within("FS", flight_status.0, 0, 7)?;
             within("DR", control.downlink_request, 0, 31)?;
             within("UM", control.utility_message, 0, 63)?;

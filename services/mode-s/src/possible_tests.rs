@@ -97,6 +97,7 @@ fn a_value_past_its_range_is_named() {
             flight_status: crate::FlightStatus(0),
             control: crate::ReplyControl::default(),
             altitude: Some(AltitudeFt(-1_300)),
+            metres: None,
             mb: None,
         },
         ..surface(0, 0)

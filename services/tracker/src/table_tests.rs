@@ -319,6 +319,7 @@ fn an_old_difference_gives_no_gnss_height() {
                 flight_status: FlightStatus(0),
                 control: ReplyControl::default(),
                 altitude: Some(AltitudeFt(1_000)),
+                metres: None,
                 mb: None,
             },
         };

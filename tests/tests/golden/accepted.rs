@@ -21,14 +21,8 @@ pub static ACCEPTED: &[Accepted] = &[
     },
     Accepted {
         peer: Peer::Rs1090,
-        reason: "rs1090 takes AC's bits 20-25 for metres twice too small where M = 1, and none where Q = 1 too; here all 12 bits count",
+        reason: "rs1090 reads an AC field with M = 1 as an altitude; here a metric altitude has a name of its own, since all 27 are noise",
         applies: |d| d.is_of(Field::Altitude) && is_metric(d),
-        counts: [0, 27],
-    },
-    Accepted {
-        peer: Peer::AdsbDeku,
-        reason: "adsb_deku reads no metric altitudes",
-        applies: |d| d.is_of(Field::Altitude) && is_metric(d) && d.theirs == Said::Nothing,
         counts: [0, 27],
     },
     Accepted {
