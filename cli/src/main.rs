@@ -1,4 +1,4 @@
-//! `squitter`: run the twin, replay recordings, decode frames.
+//! `squitter`: run the twin, replay recordings, decode frames, simulate air.
 //!
 //! Exit codes: 0 done; 1 something went wrong, told on standard error; 2 the command line is wrong.
 #![forbid(unsafe_code)]
@@ -13,6 +13,7 @@ mod ports;
 mod profile;
 mod radio;
 mod replay;
+mod scene;
 
 use std::process::ExitCode;
 
@@ -23,6 +24,8 @@ use clap::Command;
 pub enum Failure {
     #[error(transparent)]
     Source(#[from] twin::source::Error),
+    #[error(transparent)]
+    Scene(#[from] twin::source::scene::record::RecordError),
     #[error(transparent)]
     Board(#[from] twin::board::Error),
     #[error("cannot write the output: {0}")]
@@ -58,6 +61,7 @@ fn command() -> Command {
         .subcommand(replay::command())
         .subcommand(live::command())
         .subcommand(decode::command())
+        .subcommand(scene::command())
 }
 
 fn main() -> ExitCode {
@@ -66,6 +70,7 @@ fn main() -> ExitCode {
         Some(("replay", m)) => replay::run(m),
         Some(("twin", m)) => live::run(m),
         Some(("decode", m)) => decode::run(m),
+        Some(("scene", m)) => scene::run(m),
         _ => Ok(()),
     };
     match done {

@@ -1,6 +1,8 @@
 //! What end-to-end tests and benchmarks share: where the images and the recordings are, and how a bench reports.
 
+pub mod beast;
 pub mod cpu_peer;
+pub mod reception;
 
 use std::path::PathBuf;
 

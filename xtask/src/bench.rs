@@ -7,10 +7,14 @@ use std::process::Command;
 use crate::{fw, peers, workspace};
 
 /// The benchmarks and what they measure.
-const BENCHES: [(&str, &str); 3] = [
+const BENCHES: [(&str, &str); 4] = [
     (
         "twin",
         "emulated MHz and share of real time: one core, two cores, two cores with capture and DMA, the image on real traffic",
+    ),
+    (
+        "reception",
+        "recordings and simulated scenes beside dump1090-mutability; --short: fewer frames, no twin; --points TEXT: those points alone",
     ),
     (
         "cpu-peers",

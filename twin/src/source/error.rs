@@ -23,6 +23,8 @@ pub enum Error {
     UnknownFormat { name: String },
     /// A sample rate outside 1 to 64 Msps.
     Rate { hz: u64 },
+    /// A sample rate at which a scene is not written.
+    RecordRate { hz: u64 },
     /// A line of a message log is no message.
     Line {
         path: PathBuf,
@@ -77,6 +79,10 @@ impl fmt::Display for Error {
             Error::Rate { hz } => write!(
                 f,
                 "a sample rate of {hz} Hz cannot be played; give 1000000 to 64000000"
+            ),
+            Error::RecordRate { hz } => write!(
+                f,
+                "a scene cannot be written at {hz} Hz; give 2000000 to 32000000"
             ),
             Error::Line {
                 path,

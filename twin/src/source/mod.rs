@@ -3,7 +3,8 @@
 //! ```text
 //!   recording (cu8, cs16, ...) ─ band-limited interpolation ─┐
 //!                                                            ├─ dBm ─ front_end::Player ─ edges
-//!   message log ─ pulses at their own times + noise ─────────┘
+//!   message log ─ pulses at their own times + noise ─────────┤
+//!   scene ─ transmitters with tolerances, all over one path ─┘
 //! ```
 //! Either starts with [`PRE_ROLL_PS`] of noise alone, so that slicer and threshold have settled, and ends with [`POST_ROLL_PS`] of it,
 //! so that the last frame gets through. Same input, options and seed give the same edges.
@@ -15,6 +16,7 @@ pub mod message_log;
 pub mod noise;
 pub mod random;
 pub mod recording;
+pub mod scene;
 
 pub use air::{Air, AirOptions, SenderLevel};
 pub use error::Error;

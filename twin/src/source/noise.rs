@@ -25,13 +25,18 @@ pub struct Noise {
 impl Noise {
     /// Noise of `bandwidth_hz` (both sides together) sampled at `rate_hz`.
     pub fn new(seed: u64, rate_hz: f64, bandwidth_hz: f64) -> Self {
-        let mut random = Random::new(seed);
-        let white: Vec<(f64, f64)> = (0..LOOP)
-            .map(|_| (random.normal(), random.normal()))
-            .collect();
         let cut = (bandwidth_hz / rate_hz).min(1.0);
         let taps: Vec<f64> = (-HALF_TAPS..=HALF_TAPS)
             .map(|n| tap(f64::from(n), cut, f64::from(HALF_TAPS) + 1.0))
+            .collect();
+        Self::through(seed, &taps)
+    }
+
+    /// White noise through a filter of these taps, scaled to power 1.
+    pub fn through(seed: u64, taps: &[f64]) -> Self {
+        let mut random = Random::new(seed);
+        let white: Vec<(f64, f64)> = (0..LOOP)
+            .map(|_| (random.normal(), random.normal()))
             .collect();
         let energy: f64 = taps.iter().map(|t| t * t).sum();
         // Each of I and Q has half the power.

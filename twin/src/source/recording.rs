@@ -53,7 +53,7 @@ impl Format {
 
     /// I and Q of one sample, full scale 1.
     #[inline(always)]
-    fn sample(self, bytes: &[u8]) -> (f32, f32) {
+    pub fn sample(self, bytes: &[u8]) -> (f32, f32) {
         let signed =
             |at: usize| f32::from(i16::from_le_bytes([bytes[at], bytes[at + 1]])) / 32_768.0;
         match self {

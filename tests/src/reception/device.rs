@@ -1,0 +1,96 @@
+//! The shipped image in the twin as a decoder: it hears, and what it says on the console is read.
+
+use super::Decoded;
+use crate::beast::Reader;
+use twin::board::Board;
+use twin::front_end::PulseSource;
+
+/// After the air is silent the last frame needs this long to come out, ms.
+const TAIL_MS: u64 = 3;
+/// Time for an answer, ms.
+const ANSWER_MS: u64 = 20;
+/// 12 MHz counts from a frame's first edge to the end of its first 56 bits: 64 µs.
+const STAMP_AFTER_ARRIVAL: i64 = 768;
+/// Picoseconds of twelve such counts.
+const TWELVE_COUNTS_PS: i64 = 1_000_000;
+/// Ticks (120 MHz) a count.
+const TICKS_A_COUNT: i64 = 10;
+
+/// A device that reports Beast on its console.
+pub struct Device {
+    pub board: Board,
+}
+
+impl Device {
+    /// Switches one on.
+    pub fn start() -> Self {
+        let mut board = match Board::power_on(&crate::image()) {
+            Ok(board) => board,
+            Err(error) => panic!("{error}"),
+        };
+        let ready = board
+            .wait_for_capture()
+            .and_then(|()| board.wait_for_console());
+        ready.unwrap_or_else(|error| panic!("{error}"));
+        let mut device = Self { board };
+        device.ask("AT+PROTOCOL=CONSOLE,BEAST");
+        device
+    }
+
+    /// Runs so long.
+    pub fn run_ms(&mut self, ms: u64) {
+        if let Err(error) = self.board.run_ms(ms) {
+            panic!("the chip stopped: {error}");
+        }
+    }
+
+    /// Sends a line and returns what the console says within a moment.
+    pub fn ask(&mut self, line: &str) -> String {
+        self.board.console_read();
+        self.board.console_write(format!("{line}\r\n").as_bytes());
+        self.run_ms(ANSWER_MS);
+        String::from_utf8_lossy(&self.board.console_read()).into_owned()
+    }
+
+    /// The counters, as text: with reports off, so that nothing else is in it.
+    pub fn stats(&mut self) -> String {
+        self.ask("AT+PROTOCOL=CONSOLE,NONE");
+        let stats = self.ask("AT+STATS?");
+        self.ask("AT+PROTOCOL=CONSOLE,BEAST");
+        stats
+    }
+
+    /// Plays a source to its end and gives what was reported of it.
+    pub fn play(&mut self, source: Box<dyn PulseSource + Send>) -> Vec<Decoded> {
+        self.board.console_read();
+        let playback = match self.board.play(source) {
+            Ok(playback) => playback,
+            Err(error) => panic!("{error}"),
+        };
+        let mut reader = Reader::default();
+        let mut frames = Vec::new();
+        let mut left = TAIL_MS;
+        while left > 0 {
+            self.run_ms(1);
+            left -= u64::from(self.board.playback_finished());
+            for message in reader.read(&self.board.console_read()) {
+                let start = playback.start_tick as i64 / TICKS_A_COUNT;
+                let counts = message.stamp as i64 - STAMP_AFTER_ARRIVAL - start;
+                frames.push(Decoded {
+                    bytes: message.bytes,
+                    repaired: 0,
+                    arrival_ps: Some(counts * TWELVE_COUNTS_PS / 12),
+                });
+            }
+        }
+        frames
+    }
+}
+
+/// The first `name=value` of a stage in the lines of `AT+STATS?`.
+pub fn counter(stats: &str, stage: &str, name: &str) -> Option<u64> {
+    let prefix = format!("+STATS={stage},");
+    let line = stats.lines().find_map(|line| line.strip_prefix(&prefix))?;
+    let mut fields = line.split(',');
+    fields.find_map(|field| field.strip_prefix(name)?.strip_prefix('=')?.parse().ok())
+}

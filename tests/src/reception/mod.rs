@@ -1,0 +1,29 @@
+//! What reception is measured with: scenes and recordings, the engines, a peer on the same samples, and fair counts.
+//!
+//! | file | what |
+//! |---|---|
+//! | `fair` | which decoded frames of a recording count |
+//! | `native` | a scene or recording through a slicer and the native engine |
+//! | `device` | the same through the shipped image in the twin |
+//! | `mutability` | Debian's dump1090-mutability on the same samples |
+//! | `points` | the simulated scenes, and what the prototype study measured on such |
+//! | `recordings` | the recordings of `../shared/data` |
+//! | `score` | decoded frames against a scene's truth |
+
+pub mod device;
+pub mod fair;
+pub mod mutability;
+pub mod native;
+pub mod points;
+pub mod recordings;
+pub mod score;
+
+/// A frame that a decoder gave.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Decoded {
+    pub bytes: Vec<u8>,
+    /// Bits that were corrected.
+    pub repaired: u8,
+    /// Arrival of the frame's first edge in playback time, ps, where the decoder gives one.
+    pub arrival_ps: Option<i64>,
+}

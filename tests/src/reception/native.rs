@@ -1,0 +1,98 @@
+//! A level through a front end and the native engine.
+//!
+//! The level is worked out once and played through each slicer, because a scene's waves cost as much as all else.
+
+use super::Decoded;
+use demod::CountersSnapshot;
+use std::sync::Arc;
+use twin::front_end::detector::millivolt;
+use twin::front_end::{FrontEnd, Level, Player, Slicer};
+use twin::native::{self, Options};
+
+/// Threshold of a slicer whose trigger level is a floor, over the noise in the whole path, dB: the prototype study's.
+pub const FLOOR_OVER_NOISE_DB: f32 = 8.0;
+/// Picoseconds a tick, times three.
+const THREE_TICKS_PS: u64 = 25_000;
+
+/// The slicers that are reported apart, by the names of `--slicer`.
+pub const SLICERS: [(&str, Slicer); 3] = [
+    ("rc", Slicer::RcFollowing),
+    ("peak", Slicer::PeakFollowing),
+    ("fixed", Slicer::Fixed),
+];
+
+/// A level worked out beforehand, dBm.
+#[derive(Clone)]
+pub struct Rendered {
+    dbm: Arc<Vec<f32>>,
+    step_ps: u64,
+    at: usize,
+}
+
+impl Rendered {
+    /// All of a source.
+    pub fn of(source: &mut impl Level) -> Self {
+        let mut dbm = Vec::new();
+        let mut block = [0.0; 4096];
+        loop {
+            let count = source.fill(&mut block);
+            dbm.extend_from_slice(&block[..count]);
+            if count < block.len() {
+                break;
+            }
+        }
+        Self {
+            dbm: Arc::new(dbm),
+            step_ps: source.step_ps(),
+            at: 0,
+        }
+    }
+
+    /// Its length, ps.
+    pub fn length_ps(&self) -> u64 {
+        self.dbm.len() as u64 * self.step_ps
+    }
+}
+
+impl Level for Rendered {
+    fn step_ps(&self) -> u64 {
+        self.step_ps
+    }
+
+    fn fill(&mut self, out: &mut [f32]) -> usize {
+        let left = &self.dbm[self.at..];
+        let count = left.len().min(out.len());
+        out[..count].copy_from_slice(&left[..count]);
+        self.at += count;
+        count
+    }
+}
+
+/// The trigger level for a slicer over this noise, mV: the device's default where it is an offset to the average, else
+/// [`FLOOR_OVER_NOISE_DB`] over the noise, which is what an automatic level aims at.
+pub fn trigger_level_mv(slicer: Slicer, noise_dbm: f32) -> f64 {
+    match slicer {
+        Slicer::RcFollowing => twin::board::pwm_level_mv(),
+        Slicer::Fixed | Slicer::PeakFollowing => {
+            f64::from(millivolt(noise_dbm + FLOOR_OVER_NOISE_DB))
+        }
+    }
+}
+
+/// What a slicer and the native engine make of it.
+pub fn run(level: &Rendered, slicer: Slicer, noise_dbm: f32) -> (Vec<Decoded>, CountersSnapshot) {
+    let mut player = Player::new(level.clone(), &FrontEnd::with_slicer(slicer));
+    let options = Options {
+        trigger_level_mv: Some(trigger_level_mv(slicer, noise_dbm)),
+        ..Options::default()
+    };
+    let mut frames = Vec::new();
+    let counters = native::run(&mut player, options, &mut |raw| {
+        frames.push(Decoded {
+            bytes: raw.frame.bytes().to_vec(),
+            repaired: raw.repaired,
+            arrival_ps: Some((raw.arrival * THREE_TICKS_PS / 3) as i64),
+        });
+    });
+    (frames, counters)
+}
