@@ -25,6 +25,21 @@ impl CentiDegrees {
         (self.0 + 50) / 100 % 360
     }
 
+    /// 2048ths of a turn (90/512°), 0-2047, rounded; two's complement counts the same angles.
+    pub(crate) const fn of_2048ths(steps: u32) -> CentiDegrees {
+        CentiDegrees(((steps * 36_000 + 1_024) / 2_048) as u16)
+    }
+
+    /// The angle between both, hundredths of a degree, 0-18 000.
+    pub const fn away_from(self, other: CentiDegrees) -> u16 {
+        let away = self.0.abs_diff(other.0);
+        if away > FULL_TURN / 2 {
+            FULL_TURN - away
+        } else {
+            away
+        }
+    }
+
     /// Direction of the vector (`east`, `north`), each within ±8191 of any unit. The null vector has none.
     pub fn of_vector(east: i32, north: i32) -> Option<CentiDegrees> {
         if east == 0 && north == 0 {
@@ -85,6 +100,20 @@ mod tests {
                 }
                 component += step;
             }
+        }
+    }
+
+    #[test]
+    fn steps_of_a_turn_never_reach_it_and_angles_lie_across_north() {
+        assert_eq!(CentiDegrees::of_2048ths(1_024), CentiDegrees(18_000));
+        assert_eq!(CentiDegrees::of_2048ths(2_047), CentiDegrees(35_982));
+        for (one, other, away) in [
+            (100, 35_900, 200),
+            (0, 18_000, 18_000),
+            (9_000, 8_000, 1_000),
+        ] {
+            assert_eq!(CentiDegrees(one).away_from(CentiDegrees(other)), away);
+            assert_eq!(CentiDegrees(other).away_from(CentiDegrees(one)), away);
         }
     }
 

@@ -15,8 +15,8 @@
 //! | DF | what it is | decoded |
 //! |---|---|---|
 //! | 0, 16 | air-to-air surveillance | vertical status, ACAS, altitude; resolution advisories that DF16 coordinates |
-//! | 4, 20 | altitude reply, Comm-B | flight status, DR, UM, altitude; MB as it is |
-//! | 5, 21 | identity reply, Comm-B | flight status, DR, UM, Mode A code; MB as it is |
+//! | 4, 20 | altitude reply, Comm-B | flight status, DR, UM, altitude; the register in MB ([`bds`]) |
+//! | 5, 21 | identity reply, Comm-B | flight status, DR, UM, Mode A code; the register in MB |
 //! | 11 | all-call reply | capability, interrogator |
 //! | 17, 18 | extended squitter, TIS-B, ADS-R | ME type codes 0-22, 28, 29, 31 but the reserved subtypes, and coarse TIS-B; the rest is counted by type code |
 //! | 19 | military extended squitter | AF 0 as DF17; the others are named |
@@ -31,6 +31,7 @@ extern crate std;
 pub mod address;
 pub mod altitude;
 pub mod angle;
+pub mod bds;
 pub mod coarse_position;
 pub mod comm_d;
 pub mod cpr;
@@ -49,6 +50,7 @@ pub mod surveillance;
 pub use address::{Address, Icao};
 pub use altitude::{Ac12, Ac13, AltitudeFt};
 pub use angle::CentiDegrees;
+pub use bds::{Bds, Candidates, Inference, Known, Register, infer};
 pub use coarse_position::CoarsePosition;
 pub use comm_d::CommD;
 pub use cpr::{Cpr, CprFormat, CprKind, Position};

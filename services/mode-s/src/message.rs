@@ -62,7 +62,7 @@ pub enum Body {
         altitude: Option<AltitudeFt>,
         /// Metric altitude, metres; `altitude` is then `None`.
         metres: Option<u16>,
-        /// MB of DF20: which register it copies must be guessed.
+        /// MB of DF20: which register it copies must be guessed, see [`crate::bds`].
         mb: Option<MeBits>,
     },
     /// DF5, 21.

@@ -23,6 +23,7 @@
 use crate::address::{Address, Icao};
 use crate::altitude::AltitudeFt;
 use crate::angle::CentiDegrees;
+use crate::bds::{Known, infer};
 use crate::coarse_position::CoarsePosition;
 use crate::cpr::Cpr;
 use crate::identity::ModeACode;
@@ -69,7 +70,7 @@ pub(crate) fn may_be_within(
     value.map_or(Ok(()), |value| within(field, value, from, to))
 }
 
-/// Whether every field of a message holds a possible value.
+/// Whether every field of a message, and of the register found in its MB, holds a possible value.
 pub fn possible(message: &Message) -> Result<(), Impossible> {
     within("DF", message.df.number(), 0, 24)?;
     if let Some(address) = message.address() {
@@ -82,6 +83,12 @@ pub fn possible(message: &Message) -> Result<(), Impossible> {
     }
     if let Some(advisory) = message.coordination() {
         advisory_is_possible(&advisory)?;
+    }
+    if let Some(register) = message
+        .mb()
+        .and_then(|mb| infer(mb, &Known::NOTHING).found())
+    {
+        crate::bds::possible(&register)?;
     }
     match &message.body {
         Body::AirAir {

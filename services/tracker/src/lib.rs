@@ -21,6 +21,7 @@ mod counters;
 mod field;
 mod hear;
 mod index;
+mod known;
 mod place;
 mod status;
 mod table;

@@ -60,17 +60,22 @@ impl Identification {
 }
 
 fn callsign(me: MeBits) -> Option<Callsign> {
+    characters(me).filter(|text| !text.as_bytes().is_empty())
+}
+
+/// The eight characters of bits 9-56, blank or not; `None` where one means nothing. Register 2,0 has them, too.
+pub(crate) fn characters(bits: MeBits) -> Option<Callsign> {
     let mut text = Callsign::NUL;
     for (index, character) in text.0.iter_mut().enumerate() {
         let first = 9 + 6 * index;
-        *character = match me.bits(first, first + 5) as u8 {
+        *character = match bits.bits(first, first + 5) as u8 {
             letter @ 1..=26 => b'A' + letter - 1,
             32 => b' ',
             digit @ 48..=57 => digit,
             _ => return None,
         };
     }
-    (!text.as_bytes().is_empty()).then_some(text)
+    Some(text)
 }
 
 #[cfg(test)]
