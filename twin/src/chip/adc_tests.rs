@@ -3,7 +3,6 @@
 use super::{AnalogInput, Steady};
 use crate::chip::Chip;
 use crate::chip::test_chip::{FOREVER, chip, run};
-use rp2040_emu::core::CoreBus;
 
 const ADC: u32 = 0x4004_c000;
 const CS: u32 = ADC;

@@ -176,10 +176,18 @@ impl Clocks {
         Self::divided(source, self.registers[0x64 / 4] & 0x300)
     }
 
-    /// The peripheral clock is the system clock, as the UART model assumes.
-    pub fn peri_is_sys(&self) -> bool {
+    /// Peripheral clock in Hz, for UART and SPI.
+    pub fn peri_hz(&self) -> u64 {
         let ctrl = self.registers[0x48 / 4];
-        ctrl & (1 << 11) != 0 && ctrl >> 5 & 7 == 0
+        match ctrl >> 5 & 7 {
+            _ if ctrl & (1 << 11) == 0 => 0,
+            0 => self.sys_hz(),
+            1 => self.pll[0].hz(),
+            2 => self.pll[1].hz(),
+            3 => ROSC_HZ,
+            4 => self.xosc_hz(),
+            _ => 0,
+        }
     }
 
     /// Back to reset: the chip runs from the ring oscillator.

@@ -186,6 +186,8 @@ impl Chip {
 
     /// Runs until cycle `until` or the first fault.
     pub fn run_until(&mut self, until: u64) -> Result<(), Halt> {
+        // Between runs anything may have been done to the peripherals.
+        self.bus.settle();
         while self.bus.now < until && self.bus.fault.is_none() {
             self.slice(until);
         }

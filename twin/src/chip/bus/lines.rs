@@ -2,7 +2,8 @@
 
 use super::Bus;
 use crate::chip::pins::Drivers;
-use crate::chip::pins::functions::{self as f, i2c_pins};
+use crate::chip::pins::functions::{self as f, I2C_PINS, UART_PINS};
+use crate::chip::pio::Pio;
 
 /// Rounds after which the parties on a line have settled: each can answer the other once (a device that acknowledges, a controller that
 /// sees it), and nothing answers an answer within a cycle.
@@ -16,6 +17,13 @@ impl Bus {
         self.touched();
     }
 
+    /// Takes in whatever was done to peripherals and pads from outside.
+    pub fn settle(&mut self) {
+        self.watch_pins();
+        self.resolve_pins();
+        self.touched();
+    }
+
     /// Recomputes all pads from what the peripherals drive, then lets everyone on a shared wire answer.
     pub(super) fn resolve_pins(&mut self) {
         self.resolve_pins_at(self.now);
@@ -25,6 +33,7 @@ impl Bus {
     pub(super) fn resolve_pins_at(&mut self, at: u64) {
         self.pins.now = at;
         self.drive_pins();
+        self.sense_cts();
         for _ in 0..ROUNDS {
             if !self.settle_i2c(0) & !self.settle_i2c(1) {
                 return;
@@ -37,18 +46,63 @@ impl Bus {
         for n in 0..2 {
             let (sda, scl) = self.i2c[n].drives_low();
             if sda {
-                low |= i2c_pins(n, f::i2c::SDA);
+                low |= I2C_PINS[n][f::i2c::SDA];
             }
             if scl {
-                low |= i2c_pins(n, f::i2c::SCL);
+                low |= I2C_PINS[n][f::i2c::SCL];
             }
         }
+        let uart = if self.pins.selected(f::UART, u32::MAX) == 0 {
+            (0, 0)
+        } else {
+            self.uart_levels()
+        };
         self.pins.resolve(&Drivers {
+            uart,
             sio: (self.sio.out, self.sio.oe),
             pio: [0, 1].map(|n| (self.pio[n].pad_out, self.pio[n].pad_oe)),
             i2c_low: low,
             ..Drivers::default()
         });
+    }
+
+    /// What the UARTs put on their pins: TXD and nRTS, idle high.
+    fn uart_levels(&self) -> (u32, u32) {
+        let (mut levels, mut enables) = (0, 0);
+        for n in 0..2 {
+            for (signal, level) in [
+                (f::uart::TX, self.uart[n].txd(self.now)),
+                (f::uart::RTS, self.uart[n].rts_n()),
+            ] {
+                enables |= UART_PINS[n][signal];
+                if level {
+                    levels |= UART_PINS[n][signal];
+                }
+            }
+        }
+        (levels, enables)
+    }
+
+    /// Shows the UARTs their CTS, where a pin carries it. Without one, it is asserted.
+    fn sense_cts(&mut self) {
+        for n in 0..2 {
+            let pins = UART_PINS[n][f::uart::CTS];
+            if self.pins.selected(f::UART, pins) != 0 {
+                let level = self.pins.peripheral_input(f::UART, pins);
+                self.uart[n].set_cts_n(level, self.now);
+            }
+        }
+    }
+
+    /// Pads that carry a signal which moves by itself, and whose every edge somebody looks at: traced pins, pins with an interrupt
+    /// enabled, all of them while a PIO state machine runs.
+    pub(super) fn watch_pins(&mut self) {
+        let all = self.pio.iter().any(Pio::running);
+        let watched = if all { u32::MAX } else { self.pins.watched() };
+        for n in 0..2 {
+            let tx = self.pins.selected(f::UART, UART_PINS[n][f::uart::TX]);
+            self.uart[n].watched = tx & watched != 0;
+        }
     }
 
     /// Shows I2C `n` its lines. True if it answered by moving one.
@@ -63,7 +117,7 @@ impl Bus {
                 return true;
             }
         }
-        let input = |signal| self.pins.peripheral_input(f::I2C, i2c_pins(n, signal));
+        let input = |signal| self.pins.peripheral_input(f::I2C, I2C_PINS[n][signal]);
         let (sda, scl) = (input(f::i2c::SDA), input(f::i2c::SCL));
         let before = self.i2c[n].drives_low();
         self.i2c[n].on_lines(sda, scl, self.now);

@@ -18,6 +18,7 @@ mod lines;
 mod peripherals;
 mod ppb;
 mod registers;
+mod schedule;
 mod shadow;
 mod transfers;
 mod world;
@@ -26,6 +27,7 @@ mod xip;
 use blocks::reset;
 pub use fabric::{Fabric, sram_port};
 pub use fault::{Cause, Fault, ResetCause};
+use schedule::Deadlines;
 pub use shadow::{Reader, Shadow, Uninitialised};
 pub use world::TriggerNet;
 pub use xip::{Closed, Xip};
@@ -110,6 +112,7 @@ pub struct Bus {
     pub asleep: [bool; 2],
     pub wfe: [bool; 2],
     dma_at: u64,
+    deadlines: Deadlines,
     pub pio: [Pio; 2],
     pub dma: Dma,
     pub uart: [Uart; 2],
@@ -173,6 +176,7 @@ impl Bus {
             asleep: [false; 2],
             wfe: [false; 2],
             dma_at: u64::MAX,
+            deadlines: Deadlines::default(),
             pio: [Pio::new(), Pio::new()],
             dma: Dma::default(),
             uart: [Uart::default(), Uart::default()],
@@ -268,6 +272,7 @@ impl Bus {
     }
 
     fn clocks_changed(&mut self) {
+        self.deadlines.forget();
         self.time_ps = self.time_ps();
         self.since = self.now;
         self.sys_hz = self.clocks.sys_hz();
@@ -281,26 +286,13 @@ impl Bus {
             (Some(divider), hz) if hz > 0 => self.sys_hz * u64::from(divider) / hz,
             _ => 0,
         };
+        for uart in &mut self.uart {
+            uart.set_clock(self.clocks.peri_hz(), self.sys_hz);
+        }
         self.adc
             .set_clock(self.clocks.adc_hz(), self.sys_hz, self.now);
         self.timer.set_tick(tick, self.now);
         self.watchdog.set_tick(tick, self.now);
-    }
-
-    /// Cycle of the next event of any peripheral but PIO.
-    fn next_event(&self) -> u64 {
-        self.timer
-            .next_event()
-            .min(self.watchdog.next_event())
-            .min(self.uart[0].next_event())
-            .min(self.uart[1].next_event())
-            .min(self.i2c[0].next_event())
-            .min(self.i2c[1].next_event())
-            .min(self.adc.next_event())
-            .min(self.usb_host.next_event())
-            .min(self.surroundings.next)
-            .min(self.pins.next_change())
-            .min(self.dma_at)
     }
 
     /// Brings all peripherals to cycle `to`.
@@ -358,57 +350,6 @@ impl Bus {
 
     fn next_pio(&self) -> u64 {
         self.pio[0].next_tick().min(self.pio[1].next_tick())
-    }
-
-    /// Everything due at `now`, then the interrupt lines.
-    fn fire(&mut self) {
-        let now = self.now;
-        if self.surroundings.next <= now {
-            self.run_surroundings();
-        }
-        if self.pins.next_change() <= now {
-            self.pins.synced(now, 0);
-        }
-        if self.timer.next_event() <= now {
-            self.timer.advance(now);
-        }
-        for u in &mut self.uart {
-            if u.next_event() <= now {
-                u.advance(now);
-            }
-        }
-        let mut lines_moved = false;
-        for i2c in &mut self.i2c {
-            if i2c.next_event() <= now {
-                i2c.advance(now);
-                lines_moved = true;
-            }
-        }
-        if lines_moved {
-            self.resolve_pins();
-        }
-        if self.adc.next_event() <= now {
-            self.advance_adc();
-        }
-        if self.usb_host.next_event() <= now {
-            let per_ms = self.sys_hz / 1000;
-            self.usb_host.advance(&mut self.usb, now, per_ms);
-        }
-        if self.watchdog.next_event() <= now
-            && self.watchdog.bites(now)
-            && self.reset_request.is_none()
-        {
-            self.reset_request = Some(ResetCause::WatchdogTimer);
-            // Bites once; the reset clears it.
-            let _ = self.watchdog.write(0, 0, now);
-        }
-        if self.dma.busy != 0 {
-            self.move_data();
-        } else {
-            self.dma_at = u64::MAX;
-        }
-        self.lines_dirty = true;
-        self.update_lines();
     }
 
     // ---- interrupts --------------------------------------------------------------------------------------------------------

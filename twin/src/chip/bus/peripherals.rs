@@ -27,8 +27,21 @@ impl Bus {
         held
     }
 
-    /// A register was read or written, or something outside changed: DMA, events and interrupt lines may have moved.
-    pub(super) fn touched(&mut self) {
+    /// A register was read or written: DMA, events and interrupt lines may have moved. PIO names its own events.
+    fn accessed(&mut self, address: u32) {
+        self.moved();
+        if !matches!(address >> 20, 0x502 | 0x503) {
+            self.deadlines.forget();
+        }
+    }
+
+    /// Something outside the peripherals' own time changed them.
+    pub fn touched(&mut self) {
+        self.moved();
+        self.deadlines.forget();
+    }
+
+    fn moved(&mut self) {
         if self.dma.busy != 0 {
             self.dma_at = self.dma_at.min(self.now + 1);
         }
@@ -42,7 +55,7 @@ impl Bus {
         }
         let value = self.read_register(address, address & 0xffff_c000);
         // Reads with side effects (FIFOs) may let DMA or a line move.
-        self.touched();
+        self.accessed(address);
         match value {
             Some(v) => v,
             None => {
@@ -80,7 +93,7 @@ impl Bus {
         if !self.write_register(plain, base, value) {
             self.not_modelled("write", plain);
         }
-        self.touched();
+        self.accessed(plain);
         self.update_lines();
     }
 

@@ -100,8 +100,15 @@ impl Bus {
                 0x4002_8000 => self.clocks.read_pll(0, offset),
                 0x4002_c000 => self.clocks.read_pll(1, offset),
                 0x4003_0000 => self.fabric.read(offset),
-                0x4003_4000 => self.uart[0].read(offset, now),
-                0x4003_8000 => self.uart[1].read(offset, now),
+                0x4003_4000 | 0x4003_8000 => {
+                    let n = usize::from(base == 0x4003_8000);
+                    let rts_n = self.uart[n].rts_n();
+                    let value = self.uart[n].read(offset, now);
+                    if self.uart[n].rts_n() != rts_n {
+                        self.resolve_pins();
+                    }
+                    value
+                }
                 0x4004_4000 | 0x4004_8000 => {
                     let n = usize::from(base == 0x4004_8000);
                     let value = self.i2c[n].read(offset, now);
@@ -184,6 +191,7 @@ impl Bus {
             },
             0x4001_4000 => {
                 let ok = self.pins.write_io(offset, value);
+                self.watch_pins();
                 self.resolve_pins();
                 self.apply_trigger_level();
                 return ok;
@@ -205,8 +213,12 @@ impl Bus {
                 return ok;
             }
             0x4003_0000 => return self.fabric.write(offset, value),
-            0x4003_4000 => return self.uart[0].write(offset, value, now),
-            0x4003_8000 => return self.uart[1].write(offset, value, now),
+            0x4003_4000 | 0x4003_8000 => {
+                let n = usize::from(base == 0x4003_8000);
+                let ok = self.uart[n].write(offset, value, now);
+                self.resolve_pins();
+                return ok;
+            }
             0x4004_4000 | 0x4004_8000 => {
                 let n = usize::from(base == 0x4004_8000);
                 let ok = self.i2c[n].write(offset, value, now);
@@ -244,6 +256,7 @@ impl Bus {
                 let which = usize::from(base == 0x5030_0000);
                 self.pins.look_ahead(now);
                 let ok = self.pio[which].write(offset, value, now, &mut self.pins);
+                self.watch_pins();
                 self.resolve_pins();
                 return ok;
             }

@@ -48,12 +48,16 @@ pub mod i2c {
     pub const SCL: usize = 1;
 }
 
-/// Pins that can carry a signal of UART `instance`.
-pub const fn uart_pins(instance: usize, signal: usize) -> u32 {
+/// Pins n with n mod `every` = `signal` and (n + `shift`) / `group` mod `instances` = `instance`.
+const fn column(
+    (every, signal): (usize, usize),
+    (shift, group): (usize, usize),
+    (instances, instance): (usize, usize),
+) -> u32 {
     let mut mask = 0;
     let mut n = 0;
     while n < PADS {
-        if n % 4 == signal && (n + 4) / 8 % 2 == instance {
+        if n % every == signal && (n + shift) / group % instances == instance {
             mask |= 1 << n;
         }
         n += 1;
@@ -61,44 +65,33 @@ pub const fn uart_pins(instance: usize, signal: usize) -> u32 {
     mask
 }
 
-/// Pins that can carry a signal of SPI `instance`.
-pub const fn spi_pins(instance: usize, signal: usize) -> u32 {
-    let mut mask = 0;
-    let mut n = 0;
-    while n < PADS {
-        if n % 4 == signal && n / 8 % 2 == instance {
-            mask |= 1 << n;
+/// One row an instance, one mask a signal.
+const fn table<const SIGNALS: usize, const INSTANCES: usize>(
+    shift: usize,
+    group: usize,
+) -> [[u32; SIGNALS]; INSTANCES] {
+    let mut table = [[0; SIGNALS]; INSTANCES];
+    let mut instance = 0;
+    while instance < INSTANCES {
+        let mut signal = 0;
+        while signal < SIGNALS {
+            let row = (INSTANCES, instance);
+            table[instance][signal] = column((SIGNALS, signal), (shift, group), row);
+            signal += 1;
         }
-        n += 1;
+        instance += 1;
     }
-    mask
+    table
 }
 
-/// Pins that can carry a signal of I2C `instance`.
-pub const fn i2c_pins(instance: usize, signal: usize) -> u32 {
-    let mut mask = 0;
-    let mut n = 0;
-    while n < PADS {
-        if n % 2 == signal && n / 2 % 2 == instance {
-            mask |= 1 << n;
-        }
-        n += 1;
-    }
-    mask
-}
-
-/// Pins that can carry output or input `channel` (A 0, B 1) of PWM `slice`.
-pub const fn pwm_pins(slice: usize, channel: usize) -> u32 {
-    let mut mask = 0;
-    let mut n = 0;
-    while n < PADS {
-        if n % 2 == channel && n / 2 % 8 == slice {
-            mask |= 1 << n;
-        }
-        n += 1;
-    }
-    mask
-}
+/// Pins that can carry a signal of a UART: `UART_PINS[instance][signal]`.
+pub const UART_PINS: [[u32; 4]; 2] = table(4, 8);
+/// The same for SPI.
+pub const SPI_PINS: [[u32; 4]; 2] = table(0, 8);
+/// The same for I2C.
+pub const I2C_PINS: [[u32; 2]; 2] = table(0, 2);
+/// Pins of PWM slices, A and B.
+pub const PWM_PINS: [[u32; 2]; 8] = table(0, 2);
 
 #[cfg(test)]
 mod tests {
@@ -116,17 +109,17 @@ mod tests {
 
     #[test]
     fn the_formulas_are_table_279() {
-        assert_eq!(uart_pins(0, uart::TX), pins([0, 12, 16, 28]));
-        assert_eq!(uart_pins(0, uart::RX), pins([1, 13, 17, 29]));
-        assert_eq!(uart_pins(1, uart::TX), pins([4, 8, 20, 24]));
-        assert_eq!(uart_pins(1, uart::CTS), pins([6, 10, 22, 26]));
-        assert_eq!(spi_pins(0, spi::RX), pins([0, 4, 16, 20]));
-        assert_eq!(spi_pins(1, spi::TX), pins([11, 15, 27]));
-        assert_eq!(spi_pins(1, spi::SCK), pins([10, 14, 26]));
-        assert_eq!(spi_pins(0, spi::CSN), pins([1, 5, 17, 21]));
-        assert_eq!(i2c_pins(0, i2c::SDA), pins([0, 4, 8, 12, 16, 20, 24, 28]));
-        assert_eq!(i2c_pins(1, i2c::SCL), pins([3, 7, 11, 15, 19, 23, 27]));
-        assert_eq!(pwm_pins(4, 1), pins([9, 25]));
-        assert_eq!(pwm_pins(7, 0), pins([14]));
+        assert_eq!(UART_PINS[0][uart::TX], pins([0, 12, 16, 28]));
+        assert_eq!(UART_PINS[0][uart::RX], pins([1, 13, 17, 29]));
+        assert_eq!(UART_PINS[1][uart::TX], pins([4, 8, 20, 24]));
+        assert_eq!(UART_PINS[1][uart::CTS], pins([6, 10, 22, 26]));
+        assert_eq!(SPI_PINS[0][spi::RX], pins([0, 4, 16, 20]));
+        assert_eq!(SPI_PINS[1][spi::TX], pins([11, 15, 27]));
+        assert_eq!(SPI_PINS[1][spi::SCK], pins([10, 14, 26]));
+        assert_eq!(SPI_PINS[0][spi::CSN], pins([1, 5, 17, 21]));
+        assert_eq!(I2C_PINS[0][i2c::SDA], pins([0, 4, 8, 12, 16, 20, 24, 28]));
+        assert_eq!(I2C_PINS[1][i2c::SCL], pins([3, 7, 11, 15, 19, 23, 27]));
+        assert_eq!(PWM_PINS[4][1], pins([9, 25]));
+        assert_eq!(PWM_PINS[7][0], pins([14]));
     }
 }

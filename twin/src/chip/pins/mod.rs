@@ -91,6 +91,8 @@ pub struct Pins {
     settled_at: u64,
     /// The cycle at which whatever happens here happens; the bus keeps it.
     pub now: u64,
+    /// Pins of which somebody wants every edge at its cycle.
+    watch: u32,
 }
 
 /// What the peripherals offer to the multiplexer: levels and output enables, spread over the pins that can carry them.
@@ -361,6 +363,27 @@ impl Pins {
     /// Level of a pad as it is now, from either side.
     pub fn level(&self, pin: u32) -> bool {
         self.level & (1 << pin) != 0
+    }
+
+    /// From now on every edge of these pins is wanted at its cycle, as for a trace: signals that move by themselves (UART, PWM) are
+    /// otherwise worked out only when they are read.
+    pub fn watch(&mut self, mask: u32) {
+        self.watch = mask;
+    }
+
+    /// Pins of which every edge is wanted: those of [`Pins::watch`], and those with an edge interrupt enabled.
+    pub fn watched(&self) -> u32 {
+        let mut mask = self.watch;
+        for (n, bit) in (0..PADS).map(|n| (n, 1 << n)) {
+            let enabled = self
+                .inte
+                .iter()
+                .any(|e| e[n / 8] >> (4 * (n % 8)) & 0xf != 0);
+            if enabled {
+                mask |= bit;
+            }
+        }
+        mask
     }
 
     /// Levels of all pads as they are now.

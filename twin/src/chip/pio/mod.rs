@@ -93,6 +93,11 @@ impl Pio {
         self.soonest
     }
 
+    /// Some state machine runs, or has something to do.
+    pub fn running(&self) -> bool {
+        self.soonest != u64::MAX
+    }
+
     fn find_soonest(&mut self) {
         self.soonest = u64::MAX;
         for (n, sm) in self.sm.iter().enumerate() {

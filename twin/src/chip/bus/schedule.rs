@@ -1,0 +1,128 @@
+//! Who acts next: each peripheral names the cycle of its next event, and the bus asks again only after something changed.
+//!
+//! An idle peripheral names no cycle and costs nothing. PIO, DMA, USB host and surroundings keep their own cycles, which change with every
+//! word they move; all others are in the table here.
+
+use super::{Bus, ResetCause};
+
+/// Peripherals with deadlines, in the order in which those due at the same cycle act.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Actor {
+    Timer,
+    Uart(usize),
+    I2c(usize),
+    Adc,
+    Watchdog,
+}
+
+const ACTORS: [Actor; 7] = [
+    Actor::Timer,
+    Actor::Uart(0),
+    Actor::Uart(1),
+    Actor::I2c(0),
+    Actor::I2c(1),
+    Actor::Adc,
+    Actor::Watchdog,
+];
+
+/// The cycles they named.
+#[derive(Clone, Default)]
+pub(super) struct Deadlines {
+    at: [u64; ACTORS.len()],
+    earliest: u64,
+    known: bool,
+}
+
+impl Deadlines {
+    /// Any of them may have changed.
+    pub(super) fn forget(&mut self) {
+        self.known = false;
+    }
+}
+
+impl Bus {
+    fn deadline(&self, actor: Actor) -> u64 {
+        match actor {
+            Actor::Timer => self.timer.next_event(),
+            Actor::Uart(n) => self.uart[n].next_event(),
+            Actor::I2c(n) => self.i2c[n].next_event(),
+            Actor::Adc => self.adc.next_event(),
+            Actor::Watchdog => self.watchdog.next_event(),
+        }
+    }
+
+    fn act(&mut self, actor: Actor) {
+        let now = self.now;
+        match actor {
+            Actor::Timer => self.timer.advance(now),
+            Actor::Uart(n) => {
+                let rts_n = self.uart[n].rts_n();
+                self.uart[n].advance(now);
+                if self.uart[n].watched || self.uart[n].rts_n() != rts_n {
+                    self.resolve_pins();
+                }
+            }
+            Actor::I2c(n) => {
+                self.i2c[n].advance(now);
+                self.resolve_pins();
+            }
+            Actor::Adc => self.advance_adc(),
+            Actor::Watchdog => {
+                if self.watchdog.bites(now) && self.reset_request.is_none() {
+                    self.reset_request = Some(ResetCause::WatchdogTimer);
+                    // Bites once; the reset clears it.
+                    let _ = self.watchdog.write(0, 0, now);
+                }
+            }
+        }
+    }
+
+    /// Cycle of the next event of any peripheral but PIO.
+    pub(super) fn next_event(&mut self) -> u64 {
+        if !self.deadlines.known {
+            for (n, actor) in ACTORS.into_iter().enumerate() {
+                self.deadlines.at[n] = self.deadline(actor);
+            }
+            self.deadlines.earliest = self.deadlines.at.into_iter().min().unwrap_or(u64::MAX);
+            self.deadlines.known = true;
+        }
+        self.deadlines
+            .earliest
+            .min(self.usb_host.next_event())
+            .min(self.surroundings.next)
+            .min(self.pins.next_change())
+            .min(self.dma_at)
+    }
+
+    /// Everything due at `now`, then the interrupt lines.
+    pub(super) fn fire(&mut self) {
+        let now = self.now;
+        if self.surroundings.next <= now {
+            self.run_surroundings();
+            self.deadlines.forget();
+        }
+        if self.pins.next_change() <= now {
+            self.pins.synced(now, 0);
+        }
+        if self.deadlines.known && self.deadlines.earliest <= now {
+            for (n, actor) in ACTORS.into_iter().enumerate() {
+                if self.deadlines.at[n] <= now {
+                    self.act(actor);
+                    self.deadlines.at[n] = self.deadline(actor);
+                }
+            }
+            self.deadlines.earliest = self.deadlines.at.into_iter().min().unwrap_or(u64::MAX);
+        }
+        if self.usb_host.next_event() <= now {
+            let per_ms = self.sys_hz / 1000;
+            self.usb_host.advance(&mut self.usb, now, per_ms);
+        }
+        if self.dma.busy != 0 {
+            self.move_data();
+        } else {
+            self.dma_at = u64::MAX;
+        }
+        self.lines_dirty = true;
+        self.update_lines();
+    }
+}
