@@ -24,7 +24,7 @@ mod rom;
 mod sio;
 mod time;
 mod timer;
-mod uart;
+pub mod uart;
 mod usb;
 pub mod usb_host;
 

@@ -43,13 +43,13 @@ impl Bus {
 
     fn drive_pins(&mut self) {
         let mut low = 0;
-        for n in 0..2 {
-            let (sda, scl) = self.i2c[n].drives_low();
+        for (i2c, [sda_pins, scl_pins]) in self.i2c.iter().zip(I2C_PINS) {
+            let (sda, scl) = i2c.drives_low();
             if sda {
-                low |= I2C_PINS[n][f::i2c::SDA];
+                low |= sda_pins;
             }
             if scl {
-                low |= I2C_PINS[n][f::i2c::SCL];
+                low |= scl_pins;
             }
         }
         let uart = if self.pins.selected(f::UART, u32::MAX) == 0 {
@@ -69,14 +69,14 @@ impl Bus {
     /// What the UARTs put on their pins: TXD and nRTS, idle high.
     fn uart_levels(&self) -> (u32, u32) {
         let (mut levels, mut enables) = (0, 0);
-        for n in 0..2 {
+        for (uart, pins) in self.uart.iter().zip(UART_PINS) {
             for (signal, level) in [
-                (f::uart::TX, self.uart[n].txd(self.now)),
-                (f::uart::RTS, self.uart[n].rts_n()),
+                (f::uart::TX, uart.txd(self.now)),
+                (f::uart::RTS, uart.rts_n()),
             ] {
-                enables |= UART_PINS[n][signal];
+                enables |= pins[signal];
                 if level {
-                    levels |= UART_PINS[n][signal];
+                    levels |= pins[signal];
                 }
             }
         }
@@ -85,11 +85,10 @@ impl Bus {
 
     /// Shows the UARTs their CTS, where a pin carries it. Without one, it is asserted.
     fn sense_cts(&mut self) {
-        for n in 0..2 {
-            let pins = UART_PINS[n][f::uart::CTS];
-            if self.pins.selected(f::UART, pins) != 0 {
-                let level = self.pins.peripheral_input(f::UART, pins);
-                self.uart[n].set_cts_n(level, self.now);
+        for (uart, pins) in self.uart.iter_mut().zip(UART_PINS) {
+            let cts = pins[f::uart::CTS];
+            if self.pins.selected(f::UART, cts) != 0 {
+                uart.set_cts_n(self.pins.peripheral_input(f::UART, cts), self.now);
             }
         }
     }
@@ -99,9 +98,8 @@ impl Bus {
     pub(super) fn watch_pins(&mut self) {
         let all = self.pio.iter().any(Pio::running);
         let watched = if all { u32::MAX } else { self.pins.watched() };
-        for n in 0..2 {
-            let tx = self.pins.selected(f::UART, UART_PINS[n][f::uart::TX]);
-            self.uart[n].watched = tx & watched != 0;
+        for (uart, pins) in self.uart.iter_mut().zip(UART_PINS) {
+            uart.watched = self.pins.selected(f::UART, pins[f::uart::TX]) & watched != 0;
         }
     }
 
