@@ -113,6 +113,8 @@ pub struct Bus {
     pub wfe: [bool; 2],
     dma_at: u64,
     deadlines: Deadlines,
+    /// The cycle at which the DMA can make its next transfer.
+    dma_free: u64,
     pub pio: [Pio; 2],
     pub dma: Dma,
     pub uart: [Uart; 2],
@@ -177,6 +179,7 @@ impl Bus {
             wfe: [false; 2],
             dma_at: u64::MAX,
             deadlines: Deadlines::default(),
+            dma_free: 0,
             pio: [Pio::new(), Pio::new()],
             dma: Dma::default(),
             uart: [Uart::default(), Uart::default()],

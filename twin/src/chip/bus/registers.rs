@@ -249,7 +249,7 @@ impl Bus {
                 None => return false,
             },
             0x4006_0000 => return self.clocks.write_rosc(offset, value),
-            0x5000_0000 => return self.dma.write(offset, value),
+            0x5000_0000 => return self.dma.write(offset, value, now),
             0x5010_0000 => self.write_dpram(offset as usize, value, 4),
             0x5011_0000 => return self.usb.write(offset, value),
             0x5020_0000 | 0x5030_0000 => {

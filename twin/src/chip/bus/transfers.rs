@@ -1,61 +1,121 @@
 //! DMA transfers: the bus makes them, since it owns the memories.
+//!
+//! The DMA reaches memories, XIP and the peripherals of both bridges; SIO and the cores' private peripherals answer it with a bus error
+//! (datasheet 2.1), as do writes to ROM and flash.
 
 use super::fabric::{APB_PORT, FAST_PORT};
 use super::xip::DMA_MASTER;
 use super::{Bus, sram_port};
+use crate::chip::dma::{BusError, Request, pacing};
+
+/// A channel's registers: its base and its control word.
+const CHANNEL_0: u32 = 0x5000_0000;
+const STRIDE: u32 = 0x40;
+const WRITE_ADDR: u32 = 0x4;
+const CTRL: u32 = 0xc;
 
 impl Bus {
-    pub(super) fn dreq(&self, number: u32) -> bool {
+    /// What the source of a DREQ says (datasheet 2.5.3.1); `None` if nothing models it.
+    fn request(&self, number: u32) -> Option<Request> {
         let n = number as usize;
-        match number {
-            0..=3 => self.pio[0].tx_ready(n),
-            4..=7 => self.pio[0].rx_ready(n - 4),
-            8..=11 => self.pio[1].tx_ready(n - 8),
-            12..=15 => self.pio[1].rx_ready(n - 12),
-            20 => self.uart[0].tx_ready(),
-            21 => self.uart[0].rx_ready(),
-            22 => self.uart[1].tx_ready(),
-            23 => self.uart[1].rx_ready(),
-            32 | 34 => self.i2c[(n - 32) / 2].tx_ready(),
-            33 | 35 => self.i2c[(n - 32) / 2].rx_ready(),
-            36 => self.adc.ready(),
-            0x3f => true,
-            _ => false,
+        Some(match number {
+            0..=3 => self.pio[0].tx_request(n),
+            4..=7 => self.pio[0].rx_request(n - 4),
+            8..=11 => self.pio[1].tx_request(n - 8),
+            12..=15 => self.pio[1].rx_request(n - 12),
+            20 => Request::Ready(self.uart[0].tx_ready()),
+            21 => Request::Ready(self.uart[0].rx_ready()),
+            22 => Request::Ready(self.uart[1].tx_ready()),
+            23 => Request::Ready(self.uart[1].rx_ready()),
+            32 | 34 => Request::Ready(self.i2c[(n - 32) / 2].tx_ready()),
+            33 | 35 => Request::Ready(self.i2c[(n - 32) / 2].rx_ready()),
+            36 => Request::Ready(self.adc.ready()),
+            pacing::PERMANENT => Request::Always,
+            _ => return self.dma.timer_request(number, self.now),
+        })
+    }
+
+    /// Busy channels take their credits; one that nothing paces stops the chip.
+    fn pace_channels(&mut self) {
+        let mut rest = self.dma.busy;
+        while rest != 0 {
+            let n = rest.trailing_zeros();
+            rest &= rest - 1;
+            match self.request(self.dma.channels[n as usize].dreq()) {
+                Some(request) => self.dma.channels[n as usize].take(request),
+                None => self.not_modelled("TREQ_SEL", CHANNEL_0 + STRIDE * n + CTRL),
+            }
         }
     }
 
     /// One transfer, and the cycle of the next.
     pub(super) fn move_data(&mut self) {
-        let Some(n) = self.dma.pick(|d| self.dreq(d)) else {
+        if self.now < self.dma_free {
+            self.dma_at = self.dma_free;
+            return;
+        }
+        self.pace_channels();
+        let Some(n) = self.dma.pick() else {
             // Nothing is ready: the next transfer follows the next event that makes a DREQ.
-            self.dma_at = u64::MAX;
+            self.dma_at = self.dma.next_pulse(self.now);
             return;
         };
         let c = self.dma.channels[n];
         let wait = self
             .dma_waits(c.read_addr, false)
             .max(self.dma_waits(c.write_addr, true));
-        match c.size() {
-            1 => {
-                let byte = self.load(c.read_addr & !3) >> (8 * (c.read_addr & 3));
-                self.store_narrow(c.write_addr, byte & 0xff, 1);
-            }
-            2 => {
-                let half = self.load(c.read_addr & !3) >> (8 * (c.read_addr & 2));
-                self.store_narrow(c.write_addr, half & 0xffff, 2);
-            }
-            _ => {
-                let word = self.load(c.read_addr);
-                let word = if c.byte_swap() {
-                    word.swap_bytes()
-                } else {
-                    word
-                };
-                self.store(c.write_addr, word);
+        match self.transfer(n) {
+            Ok(()) => self.dma.transferred(n),
+            Err(error) => self.dma.failed(n, error),
+        }
+        self.dma_free = self.now + 1 + wait;
+        self.dma_at = self.dma_free;
+    }
+
+    /// Channel `n` reads and writes once.
+    fn transfer(&mut self, n: usize) -> Result<(), BusError> {
+        let c = self.dma.channels[n];
+        let (from, to, size) = (c.read_addr, c.write_addr, c.size());
+        for (register, address) in [(0, from), (WRITE_ADDR, to)] {
+            if address % size != 0 {
+                let register = CHANNEL_0 + STRIDE * n as u32 + register;
+                self.not_modelled("an address that is not aligned in use", register);
             }
         }
-        self.dma.transferred(n);
-        self.dma_at = self.now + 1 + wait;
+        let word = self.read_for_dma(from).ok_or(BusError::Read)?;
+        // The lanes of the address, then BSWAP, then the sniffer (datasheet 2.5.5.2).
+        let unused = 32 - 8 * size;
+        let data = word >> (8 * (from % 4)) << unused >> unused;
+        let data = match c.byte_swap() {
+            true => data.swap_bytes() >> unused,
+            false => data,
+        };
+        self.dma.sniff(n, data);
+        self.write_for_dma(to, data, size as usize)
+            .ok_or(BusError::Write)
+    }
+
+    /// Whether a peripheral of either bridge, or the flash interface, lies at an address.
+    fn dma_reaches(address: u32) -> bool {
+        matches!(address >> 24, 0x14 | 0x18 | 0x40 | 0x50)
+    }
+
+    fn read_for_dma(&mut self, address: u32) -> Option<u32> {
+        let address = address & !3;
+        match self.memory(address, 4) {
+            Some(bytes) => bytes.try_into().ok().map(u32::from_le_bytes),
+            None => Self::dma_reaches(address).then(|| self.peripheral_read(address)),
+        }
+    }
+
+    fn write_for_dma(&mut self, address: u32, value: u32, size: usize) -> Option<()> {
+        match self.sram_offset(address, size) {
+            Some(at) => self.write_sram(at, value, size),
+            None if !Self::dma_reaches(address) => return None,
+            None if size == 4 => self.peripheral_write(address, value),
+            None => self.peripheral_write_narrow(address, value, size),
+        }
+        Some(())
     }
 
     /// Cycles the DMA waits for the port of `address`, or for flash.
@@ -69,28 +129,6 @@ impl Bus {
                 Some(at) => self.fabric.claim_for_dma(sram_port(at), now, write),
                 None => 0,
             },
-        }
-    }
-
-    /// A word as a bus master other than the cores reads it.
-    pub(super) fn load(&mut self, address: u32) -> u32 {
-        match self.memory(address, 4) {
-            Some(bytes) => u32::from_le_bytes(bytes.try_into().expect("four bytes")),
-            None => self.peripheral_read(address),
-        }
-    }
-
-    pub(super) fn store(&mut self, address: u32, value: u32) {
-        match self.sram_offset(address, 4) {
-            Some(at) => self.write_sram(at, value, 4),
-            None => self.peripheral_write(address, value),
-        }
-    }
-
-    pub(super) fn store_narrow(&mut self, address: u32, value: u32, size: usize) {
-        match self.sram_offset(address, size) {
-            Some(at) => self.write_sram(at, value, size),
-            None => self.peripheral_write_narrow(address, value, size),
         }
     }
 }

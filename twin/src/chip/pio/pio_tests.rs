@@ -55,7 +55,7 @@ fn words(shortcut: bool, shiftctrl: u32) -> Vec<(u64, u32)> {
     let mut now = 0;
     while now < 1_000_000 {
         now = pio.run(now + 100, &mut pins).max(now + 1);
-        while pio.rx_ready(0) {
+        while !pio.observe(0).rx.is_empty() {
             words.push((now, pio.read(0x020).expect("RXF0")));
         }
     }
@@ -106,7 +106,7 @@ fn a_fractional_divider_ticks_on_average_at_its_rate() {
     let (mut now, mut bytes) = (0, 0);
     while now < 125_000 {
         now = pio.run(125_000, &mut pins);
-        while pio.rx_ready(0) {
+        while !pio.observe(0).rx.is_empty() {
             pio.read(0x020);
             bytes += 1;
         }

@@ -1,16 +1,25 @@
 //! The registers of a block; their table is in [`super`].
 
 use super::{Pins, Pio};
+use crate::chip::dma::Request;
 
 impl Pio {
-    /// RX FIFO not empty: the DREQ of `DREQ_PIOn_RXm`.
-    pub fn rx_ready(&self, n: usize) -> bool {
-        self.sm[n].rx.len > 0
+    /// DREQ_PIOn_RXm: a credit for each word in the RX FIFO.
+    pub fn rx_request(&self, n: usize) -> Request {
+        let rx = &self.sm[n].rx;
+        Request::Words {
+            count: rx.pushed,
+            waiting: rx.len as u32,
+        }
     }
 
-    /// TX FIFO not full: the DREQ of `DREQ_PIOn_TXm`.
-    pub fn tx_ready(&self, n: usize) -> bool {
-        !self.sm[n].tx_full()
+    /// DREQ_PIOn_TXm: a credit for each free place in the TX FIFO.
+    pub fn tx_request(&self, n: usize) -> Request {
+        let sm = &self.sm[n];
+        Request::Words {
+            count: sm.tx.popped,
+            waiting: sm.tx_depth().saturating_sub(sm.tx.len) as u32,
+        }
     }
 
     fn intr(&self) -> u32 {

@@ -11,6 +11,9 @@ pub(super) struct Fifo {
     pub(super) words: [u32; 2 * FIFO_DEPTH],
     pub(super) head: usize,
     pub(super) len: usize,
+    /// Words that went in and out so far, which the DREQs tell.
+    pub(super) pushed: u32,
+    pub(super) popped: u32,
 }
 
 impl Fifo {
@@ -18,6 +21,7 @@ impl Fifo {
         let slot = (self.head + self.len) % self.words.len();
         self.words[slot] = word;
         self.len += 1;
+        self.pushed = self.pushed.wrapping_add(1);
     }
 
     pub(super) fn pop(&mut self) -> Option<u32> {
@@ -27,6 +31,7 @@ impl Fifo {
         let word = self.words[self.head];
         self.head = (self.head + 1) % self.words.len();
         self.len -= 1;
+        self.popped = self.popped.wrapping_add(1);
         Some(word)
     }
 
