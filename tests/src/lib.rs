@@ -3,6 +3,7 @@
 pub mod beast;
 pub mod cpu_peer;
 pub mod reception;
+pub mod power_cuts;
 
 use std::path::PathBuf;
 

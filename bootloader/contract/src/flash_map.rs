@@ -3,10 +3,10 @@
 //! ```text
 //! 0x000000  boot2        256 B
 //! 0x000100  bootloader   to 64 KiB
-//! 0x010000  boot log     2 x 4 KiB   reserved, nothing writes it yet
+//! 0x010000  boot log     2 x 4 KiB
 //! 0x012000  device data  8 KiB       reserved, nothing writes it yet
 //! 0x014000  slot A       header 4 KiB, image 968 KiB
-//! 0x107000  slot B       the same; nothing fills it yet
+//! 0x107000  slot B       the same
 //! 0x1FA000  rest         24 KiB      reserved
 //! ```
 
@@ -23,6 +23,10 @@ pub const BOOT2_LEN: u32 = 0x100;
 pub const BOOTLOADER: u32 = BOOT2_LEN;
 /// Offset of the first byte that is not the bootloader's.
 pub const BOOTLOADER_END: u32 = 0x01_0000;
+/// Bytes that the flash erases at once (W25Q16JV, 8.1: sector erase).
+pub const SECTOR: u32 = 0x1000;
+/// Bytes that the flash programs at once (W25Q16JV, 8.2.13: page program).
+pub const PAGE: u32 = 0x100;
 /// Offset of the boot log.
 pub const BOOT_LOG: u32 = 0x01_0000;
 /// Offset of the device data.

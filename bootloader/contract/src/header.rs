@@ -1,28 +1,54 @@
-//! The slot header: 64 bytes at the start of the 4 KiB in front of an image, little-endian.
+//! The slot header: 256 bytes, one flash page, at the start of the 4 KiB in front of an image. Little-endian. It is the signed manifest
+//! too: what an update shows before anything is erased is what is written, last of all, when the image behind it is whole.
 //!
 //! ```text
-//!  0  magic          4   "SQTR"
-//!  4  layout         2   1
-//!  6  header length  2   64
-//!  8  board         16   ASCII, zero-padded
-//! 24  link address   4   address of the image's vector table
-//! 28  image length   4   bytes, from the vector table on
-//! 32  version        4   a, b, c, d
-//! 36  image CRC-32   4   over `image length` bytes
-//! 40  reserved      20   zero
-//! 60  header CRC-32  4   over bytes 0..60
+//!   0  magic             4   "SQTR"
+//!   4  layout            2   2
+//!   6  header length     2   256
+//!   8  board            16   ASCII, zero-padded
+//!  24  link address      4   address of the image's vector table
+//!  28  image length      4   bytes, from the vector table on
+//!  32  version           4   a, b, c, d
+//!  36  security counter  4   never falls: an image below the device's floor is refused
+//!  40  image SHA-256    32
+//!  72  image CRC-32      4   tells damage from forgery in a message; the SHA-256 decides
+//!  76  key id            8   first bytes of the public key's SHA-256
+//!  84  date              4   of the commit: year (2), month, day
+//!  88  reserved        100   zero
+//! 188  header CRC-32     4   over bytes 0..188
+//! 192  signature        64   Ed25519 over bytes 0..192
 //! ```
+//! The two links of one release carry two headers that differ in link address, length and hashes.
 
 use crate::crc32;
 
 /// First four bytes of a header.
 pub const MAGIC: [u8; 4] = *b"SQTR";
 /// The layout drawn above.
-pub const LAYOUT: u16 = 1;
-/// Bytes of a header.
-pub const LEN: usize = 64;
+pub const LAYOUT: u16 = 2;
+/// Bytes of a header: one page, which the flash programs at once.
+pub const LEN: usize = 256;
+/// Bytes under the signature.
+pub const SIGNED: usize = 192;
+/// Bytes of an Ed25519 signature.
+pub const SIGNATURE: usize = 64;
 /// Offset of the header's own CRC.
-const CRC_AT: usize = LEN - 4;
+const CRC_AT: usize = SIGNED - 4;
+/// Offset of the reserved bytes.
+const RESERVED_AT: usize = 88;
+
+/// Names a public key: the first eight bytes of its SHA-256.
+pub type KeyId = [u8; 8];
+/// Names an image: the first eight bytes of its SHA-256.
+pub type ImageId = [u8; 8];
+
+/// The day of the commit an image was built from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Date {
+    pub year: u16,
+    pub month: u8,
+    pub day: u8,
+}
 
 /// What a slot holds, as its header says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,8 +61,16 @@ pub struct Header {
     pub image_length: u32,
     /// a.b.c.d
     pub version: [u8; 4],
+    /// Security counter.
+    pub counter: u32,
+    /// SHA-256 of the image.
+    pub image_sha256: [u8; 32],
     /// CRC-32 of the image.
     pub image_crc: u32,
+    /// The key that signed.
+    pub key: KeyId,
+    /// Day of the commit.
+    pub date: Date,
 }
 
 /// Why bytes are no header.
@@ -50,14 +84,14 @@ pub enum HeaderError {
     Magic,
     /// The header's own CRC does not hold.
     HeaderCrc,
-    /// A layout or length this code does not know.
+    /// A layout or length this code does not know, or reserved bytes in use.
     Layout,
 }
 
 impl Header {
-    /// The header as it stands in flash.
-    pub fn encode(&self) -> [u8; LEN] {
-        let mut out = [0; LEN];
+    /// The bytes that are signed.
+    pub fn encode(&self) -> [u8; SIGNED] {
+        let mut out = [0; SIGNED];
         out[0..4].copy_from_slice(&MAGIC);
         out[4..6].copy_from_slice(&LAYOUT.to_le_bytes());
         out[6..8].copy_from_slice(&(LEN as u16).to_le_bytes());
@@ -65,13 +99,27 @@ impl Header {
         out[24..28].copy_from_slice(&self.link_address.to_le_bytes());
         out[28..32].copy_from_slice(&self.image_length.to_le_bytes());
         out[32..36].copy_from_slice(&self.version);
-        out[36..40].copy_from_slice(&self.image_crc.to_le_bytes());
+        out[36..40].copy_from_slice(&self.counter.to_le_bytes());
+        out[40..72].copy_from_slice(&self.image_sha256);
+        out[72..76].copy_from_slice(&self.image_crc.to_le_bytes());
+        out[76..84].copy_from_slice(&self.key);
+        out[84..86].copy_from_slice(&self.date.year.to_le_bytes());
+        out[86] = self.date.month;
+        out[87] = self.date.day;
         let crc = crc32(&out[..CRC_AT]);
         out[CRC_AT..].copy_from_slice(&crc.to_le_bytes());
         out
     }
 
-    /// Reads a header; its own CRC is checked before any field but the magic is believed.
+    /// The header as it stands in flash.
+    pub fn with_signature(&self, signature: &[u8; SIGNATURE]) -> [u8; LEN] {
+        let mut out = [0; LEN];
+        out[..SIGNED].copy_from_slice(&self.encode());
+        out[SIGNED..].copy_from_slice(signature);
+        out
+    }
+
+    /// Reads a header; its own CRC is checked before any field but the magic is believed. The signature is not checked here.
     pub fn decode(bytes: &[u8]) -> Result<Header, HeaderError> {
         let bytes: &[u8; LEN] = bytes
             .get(..LEN)
@@ -86,24 +134,50 @@ impl Header {
         if word(bytes, CRC_AT) != crc32(&bytes[..CRC_AT]) {
             return Err(HeaderError::HeaderCrc);
         }
-        if word(bytes, 4) != (LAYOUT as u32 | (LEN as u32) << 16) {
+        let known = word(bytes, 4) == (LAYOUT as u32 | (LEN as u32) << 16);
+        if !known || bytes[RESERVED_AT..CRC_AT].iter().any(|&byte| byte != 0) {
             return Err(HeaderError::Layout);
         }
-        let mut board = [0; 16];
-        board.copy_from_slice(&bytes[8..24]);
         Ok(Header {
-            board,
+            board: array(bytes, 8),
             link_address: word(bytes, 24),
             image_length: word(bytes, 28),
-            version: [bytes[32], bytes[33], bytes[34], bytes[35]],
-            image_crc: word(bytes, 36),
+            version: array(bytes, 32),
+            counter: word(bytes, 36),
+            image_sha256: array(bytes, 40),
+            image_crc: word(bytes, 72),
+            key: array(bytes, 76),
+            date: Date {
+                year: u16::from_le_bytes([bytes[84], bytes[85]]),
+                month: bytes[86],
+                day: bytes[87],
+            },
         })
     }
+
+    /// The signature of header bytes, and what it signs.
+    pub fn signature(bytes: &[u8; LEN]) -> (&[u8], [u8; SIGNATURE]) {
+        (&bytes[..SIGNED], array(bytes, SIGNED))
+    }
+
+    /// The image this header is for.
+    pub fn image_id(&self) -> ImageId {
+        let mut id = [0; 8];
+        id.copy_from_slice(&self.image_sha256[..8]);
+        id
+    }
+}
+
+/// `N` bytes at `at`, which every caller keeps inside the header.
+fn array<const N: usize>(bytes: &[u8; LEN], at: usize) -> [u8; N] {
+    let mut out = [0; N];
+    out.copy_from_slice(&bytes[at..at + N]);
+    out
 }
 
 /// The little-endian word at `at`, which every caller keeps inside the header.
 fn word(bytes: &[u8; LEN], at: usize) -> u32 {
-    u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]])
+    u32::from_le_bytes(array(bytes, at))
 }
 
 #[cfg(test)]
@@ -116,19 +190,32 @@ mod tests {
             link_address: 0x1001_5000,
             image_length: 123_456,
             version: [0, 1, 0, 7],
+            counter: 3,
+            image_sha256: core::array::from_fn(|i| i as u8),
             image_crc: 0xDEAD_BEEF,
+            key: *b"somebody",
+            date: Date {
+                year: 2026,
+                month: 11,
+                day: 24,
+            },
         }
     }
 
     #[test]
     fn a_header_survives_the_round_trip() {
-        assert_eq!(Header::decode(&sample().encode()), Ok(sample()));
+        let bytes = sample().with_signature(&[7; SIGNATURE]);
+        assert_eq!(Header::decode(&bytes), Ok(sample()));
+        assert_eq!(
+            Header::signature(&bytes),
+            (&sample().encode()[..], [7; SIGNATURE])
+        );
     }
 
     #[test]
-    fn every_single_bit_flip_is_refused() {
-        let good = sample().encode();
-        for bit in 0..LEN * 8 {
+    fn every_bit_flip_in_the_signed_part_is_refused() {
+        let good = sample().with_signature(&[7; SIGNATURE]);
+        for bit in 0..SIGNED * 8 {
             let mut bad = good;
             bad[bit / 8] ^= 1 << (bit % 8);
             assert!(Header::decode(&bad).is_err(), "bit {bit}");
@@ -146,11 +233,13 @@ mod tests {
     }
 
     #[test]
-    fn another_layout_with_a_good_crc_is_refused() {
-        let mut bytes = sample().encode();
-        bytes[4] = 2;
-        let crc = crc32(&bytes[..CRC_AT]);
-        bytes[CRC_AT..].copy_from_slice(&crc.to_le_bytes());
-        assert_eq!(Header::decode(&bytes), Err(HeaderError::Layout));
+    fn another_layout_or_used_reserved_bytes_with_a_good_crc_are_refused() {
+        for at in [4, 6, RESERVED_AT, CRC_AT - 1] {
+            let mut bytes = sample().with_signature(&[7; SIGNATURE]);
+            bytes[at] ^= 1;
+            let crc = crc32(&bytes[..CRC_AT]);
+            bytes[CRC_AT..SIGNED].copy_from_slice(&crc.to_le_bytes());
+            assert_eq!(Header::decode(&bytes), Err(HeaderError::Layout), "{at}");
+        }
     }
 }

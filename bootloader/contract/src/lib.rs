@@ -1,26 +1,26 @@
-//! What bootloader, app and tools agree on, and nothing else: flash map, slot header, hand-over words.
+//! What bootloader, app and tools agree on, and nothing else: flash map, slot header, boot log, hand-over words.
 //!
-//! Not here: how anything is read, written or decided. The bootloader decides in `boot-core`; the tools write.
+//! Not here: how anything is decided. The bootloader decides in `boot-core`; the tools write.
 //!
 //! | module | agrees on |
 //! |---|---|
 //! | [`flash_map`] | which bytes of the flash belong to whom |
 //! | [`header`] | the 4 KiB before each image that says what it is and how to check it |
+//! | [`boot_log`], [`log_store`] | which image is on trial, confirmed or rejected, and how that survives a power cut |
 //! | [`hand_over`] | the two watchdog scratch words that survive a reset |
-//!
-//! Not yet in the header: SHA-256, security counter, key id, signature. They come with the update; until then the CRC-32 guards
-//! against damage, not against anyone.
 #![no_std]
 #![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;
 
+pub mod boot_log;
 pub mod flash_map;
 pub mod hand_over;
 pub mod header;
 #[cfg(test)]
 mod linker_test;
+pub mod log_store;
 
 /// The board an image is built for, as its header names it. 16 bytes, zero-padded ASCII.
 pub const BOARD_ADSBEE_1090: [u8; 16] = *b"adsbee_1090\0\0\0\0\0";

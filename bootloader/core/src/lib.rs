@@ -1,24 +1,33 @@
-//! Boot decisions, pure: what the bootloader does with what it finds. No register, no flash access, no clock; the same code is
-//! tested on the host and runs on the chip.
+//! The bootloader's decisions, pure: what it does with what it finds and with what it is sent. No register, no clock, no port; flash is a
+//! trait. The same code is tested on the host, with its power cut, and runs on the chip.
+//!
+//! | module | decides |
+//! |---|---|
+//! | this one | what the hand-over words and the reset mean: jump at once, or verify |
+//! | [`slot`], [`keys`] | whether a slot, or a header that is offered, is good |
+//! | [`choose`] | which slot runs: trial, confirmed, rollback; which one an update may overwrite |
+//! | [`package`], [`update`] | what of a file is taken, in which order it is written |
+//! | [`ymodem`] | how the file comes |
 //!
 //! ```text
-//!  scratch words say Run ──────────────────────────────▶ Jump       (clear the words, leave a report, set VTOR, jump)
-//!  anything else ── slot A good ───────────────────────▶ HandOver   (write Run, watchdog reset: come back with clean peripherals)
-//!                └─ slot A refused ────────────────────▶ Stay       (tell the reason on COMMS_UART)
+//!  scratch words say Run ─────────────────────────────▶ Jump       (clear the words, leave a report, set VTOR, jump)
+//!  anything else ── verify, choose ─ a slot ──────────▶ HandOver   (write Run, watchdog reset: come back with clean peripherals)
+//!                                  └ none ────────────▶ Stay       (tell the reason)
 //! ```
 //! The jump itself does not verify again: the request word is only ever written after a verification, and the reset between the
 //! two is microseconds long.
-//!
-//! Not here yet: slot B, trial and rollback, the boot log, the update, the 3 s window, the lock.
 #![no_std]
 #![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;
 
-mod slot;
-
-pub use slot::{Refusal, check_slot};
+pub mod choose;
+pub mod keys;
+pub mod package;
+pub mod slot;
+pub mod update;
+pub mod ymodem;
 
 use boot_contract::hand_over::{Cause, HandOver};
 

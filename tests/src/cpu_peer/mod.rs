@@ -12,7 +12,7 @@ mod arithmetic;
 mod assembly;
 mod branches;
 pub mod class;
-mod dice;
+pub mod dice;
 pub mod forms;
 mod generator;
 mod image;
