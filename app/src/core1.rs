@@ -4,7 +4,7 @@
 //!   wait (WFI) for 32 words ─▶ demodulate up to the newest word ─▶ queue of 127 frames ─▶ wake core 0 if any
 //!     128 us                     the budget: 15 360 cycles a block       full: dropped, counted
 //! ```
-//! Everything here, and all it calls, is placed in SRAM by `linker/app_slot_a.x`; interrupts stay masked.
+//! Everything here, and all it calls, is placed in SRAM by `linker/app.x`; interrupts stay masked.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 use demod::{Counters, Demodulator, RING_WORDS, RawFrame, SampleRing};

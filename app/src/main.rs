@@ -17,6 +17,7 @@
 #![no_main]
 #![forbid(unsafe_code)]
 
+mod confirm;
 mod console;
 mod core1;
 mod port;
@@ -25,6 +26,7 @@ mod reports;
 mod stats;
 
 use boot_contract::hand_over::{Cause, HandOver};
+use confirm::{Confirm, Due};
 use console::Console;
 use core::sync::atomic::Ordering;
 use core1::{Context, QUEUE_SLOTS, QueueCounters};
@@ -115,6 +117,7 @@ fn start() -> Option<core::convert::Infallible> {
         second: 0,
         last: (0, 0),
         reboot_at_us: None,
+        confirm: Confirm::new(parts.flash),
     };
     let mut input = Console::new();
     let mut next_beat_us = timer::now_us() + BEAT_US;
@@ -127,6 +130,9 @@ fn start() -> Option<core::convert::Infallible> {
         let more_reports = receiver.reports();
         let more_bytes = receiver.commands(&mut input);
         receiver.reboot_if_due();
+        if receiver.confirm.serve(receiver.now_ms()) == Due::GiveUp {
+            watchdog::reset(HandOver::Restart(Cause::Other).words());
+        }
 
         let now_us = timer::now_us();
         if now_us >= next_beat_us {

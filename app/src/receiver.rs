@@ -8,6 +8,7 @@
 //! ```
 //! Time here is milliseconds of uptime, counted from the first sample, which is the zero of the frames' ticks too.
 
+use crate::confirm::Confirm;
 use crate::console::{self, Console};
 use crate::core1::QueueCounters;
 use crate::port::Port;
@@ -60,11 +61,12 @@ pub struct Receiver {
     /// Counts at the start of the second: demodulated, decoded.
     pub last: (u32, u32),
     pub reboot_at_us: Option<u64>,
+    pub confirm: Confirm,
 }
 
 impl Receiver {
     /// Uptime, milliseconds.
-    fn now_ms(&self) -> u64 {
+    pub fn now_ms(&self) -> u64 {
         (timer::now_us().saturating_sub(self.capture_start_us)) / 1000
     }
 
@@ -151,6 +153,8 @@ impl Receiver {
         let stats = Stats {
             uptime_s: self.second,
             start: self.start,
+            slot: self.confirm.slot(),
+            confirmed: self.confirm.is_confirmed(),
             capture: &self.shared.capture,
             demod: &self.shared.demod,
             queue: &self.shared.queue,

@@ -1,7 +1,7 @@
 //! What `AT+STATS?` prints: every stage, what it was offered, what it passed on, what it refused and why.
 //!
 //! ```text
-//!   +STATS=DEVICE,uptime_s=..,start=..          why this start happened
+//!   +STATS=DEVICE,uptime_s=..,start=..,slot=..,image=..   why this start happened, what runs
 //!   +STATS=CAPTURE,blocks=..,words=..,..        128 us a block
 //!   +STATS=DEMOD,words=..,candidates=..,..      candidates = one outcome each, see services/demod
 //!   +STATS=QUEUE,offered=..,queued=..,dropped=..,waiting=..
@@ -25,6 +25,7 @@
 
 use crate::core1::QueueCounters;
 use crate::port::PortCounters;
+use boot_contract::boot_log::SlotName;
 use boot_contract::hand_over::Cause;
 use core::fmt::{self, Write};
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -46,6 +47,8 @@ pub struct DecodeCounters {
 pub struct Stats<'a> {
     pub uptime_s: u32,
     pub start: Option<Cause>,
+    pub slot: Option<SlotName>,
+    pub confirmed: bool,
     pub capture: &'a CaptureCounters,
     pub demod: &'a demod::Counters,
     pub queue: &'a QueueCounters,
@@ -104,7 +107,13 @@ impl Stats<'_> {
         let start = self.start.map_or("unknown", Cause::name);
         out(
             line("DEVICE", &[("uptime_s", self.uptime_s)]).and_then(|mut line| {
-                write!(line, ",start={start}")?;
+                let slot = self.slot.map_or("unknown", SlotName::letter);
+                let image = if self.confirmed {
+                    "confirmed"
+                } else {
+                    "on_trial"
+                };
+                write!(line, ",start={start},slot={slot},image={image}")?;
                 Ok(line)
             }),
         );

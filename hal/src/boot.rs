@@ -1,4 +1,4 @@
-//! For the bootloader: the flash as bytes, and the jump into an image.
+//! The flash as bytes, which image runs, and the jump into one.
 
 use rp2040_hal::pac;
 
@@ -7,15 +7,22 @@ const XIP_BASE: u32 = 0x1000_0000;
 /// The most the QSPI window shows, bytes.
 const XIP_WINDOW: u32 = 16 * 1024 * 1024;
 
-/// `length` bytes of flash from `offset`; empty when they lie beyond the window. Nothing in this firmware writes flash.
+/// `length` bytes of flash from `offset`; empty when they lie beyond the window.
 pub fn flash(offset: u32, length: u32) -> &'static [u8] {
     match offset.checked_add(length) {
-        // SAFETY: inside the XIP window every byte is readable, and nothing writes the flash while this firmware runs.
+        // SAFETY: inside the XIP window every byte is readable. What is written meanwhile (`crate::flash`) is the boot log and a slot
+        // that does not run; whoever reads those reads them through `crate::flash::Flash`, into a buffer of its own.
         Some(end) if end <= XIP_WINDOW => unsafe {
             core::slice::from_raw_parts((XIP_BASE + offset) as *const u8, length as usize)
         },
         _ => &[],
     }
+}
+
+/// Address of the vector table in force: the image that runs.
+pub fn vectors() -> u32 {
+    // SAFETY: a read of a core register without side effects.
+    unsafe { (*pac::PPB::ptr()).vtor().read().bits() }
 }
 
 /// Enters the image whose vector table is at `vectors`: VTOR, stack pointer, reset vector.

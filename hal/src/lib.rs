@@ -17,7 +17,7 @@
 //! | [`boot`] | flash as bytes, jump into an image | XIP, VTOR |
 //! | [`byte_ring`], [`take_once`] | whole messages or nothing; statics handed out once | – |
 //!
-//! Core 1 runs from SRAM alone. What it calls here is `dma_ring`, `timer`, `core1` and `pio_sampler`, which `linker/app_slot_a.x`
+//! Core 1 runs from SRAM alone. What it calls here is `dma_ring`, `timer`, `core1` and `pio_sampler`, which `linker/app.x`
 //! places by name; a function that core 1 needs must live in one of these.
 #![no_std]
 
@@ -26,6 +26,7 @@ pub mod boot;
 pub mod byte_ring;
 pub mod core1;
 pub mod dma_ring;
+pub mod flash;
 pub mod parts;
 pub mod pio_sampler;
 pub mod sleep;

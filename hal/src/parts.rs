@@ -8,6 +8,7 @@
 use crate::board::adsbee_1090::{self, PULSES_GPIO, Pins, TriggerLevelSlice};
 use crate::core1::Core1;
 use crate::dma_ring::DmaChannels;
+use crate::flash::Flash;
 use crate::pio_sampler::PioSampler;
 use crate::uart::CommsUart;
 use crate::usb::UsbConsole;
@@ -21,6 +22,9 @@ use rp2040_hal::{Sio, gpio, pac, xosc::setup_xosc_blocking};
 
 /// COMMS_UART's rate before any setting, bits a second.
 pub const COMMS_BAUD: u32 = 115_200;
+
+/// Flash that every board has (a bare Pico's 2 MiB; larger parts are not used beyond that), bytes.
+const FLASH_BYTES: u32 = 2 * 1024 * 1024;
 
 /// VCO 1200 MHz / 5 / 2 = 120 MHz.
 const PLL_SYS_120MHZ: PLLConfig = PLLConfig {
@@ -72,6 +76,8 @@ pub struct Parts {
     pub comms_uart: CommsUart,
     /// USB, not yet shown to the host.
     pub usb: UsbParts,
+    /// The flash of the smallest board, 2 MiB.
+    pub flash: Flash,
     /// The watchdog, not started.
     pub watchdog: Watchdog,
     /// The second core, in its ROM.
@@ -149,6 +155,7 @@ impl Parts {
             dma: DmaChannels { dma: p.DMA },
             comms_uart: CommsUart::new(p.UART1, COMMS_BAUD),
             usb: UsbParts { bus },
+            flash: Flash::new(FLASH_BYTES),
             watchdog: Watchdog::new(watchdog),
             core1: Core1 {
                 psm: p.PSM,

@@ -2,8 +2,8 @@
 
 pub mod beast;
 pub mod cpu_peer;
-pub mod reception;
 pub mod power_cuts;
+pub mod reception;
 
 use std::path::PathBuf;
 

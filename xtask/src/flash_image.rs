@@ -2,14 +2,22 @@
 //!
 //! ```text
 //!   0x1000_0000  boot2 + bootloader     ends before 0x1001_0000
+//!   0x1001_0000  boot log               erased
 //!   0x1001_4000  header, 0xFF to a whole sector
 //!   0x1001_5000  app                    ends before 0x1010_7000
 //! ```
 
 use crate::elf::{Image, Load};
-use boot_contract::flash_map::{BOOTLOADER_END, HEADER_AREA, IMAGE_MAX, SLOT_A, XIP_BASE};
-use boot_contract::header::Header;
+use boot_contract::boot_log::SlotName;
+use boot_contract::flash_map::{
+    BOOT_LOG, BOOTLOADER_END, HEADER_AREA, IMAGE_MAX, SLOT_A, XIP_BASE,
+};
+use boot_contract::header::{self, Date, Header};
 use boot_contract::{BOARD_ADSBEE_1090, crc32};
+use boot_core::keys::{Keys, key_id};
+use boot_core::slot::{ImageCheck, Terms};
+use ed25519_compact::KeyPair;
+use sha2::{Digest, Sha256};
 
 /// Bytes that a UF2 block programs.
 pub const PAGE: usize = 256;
@@ -45,8 +53,72 @@ pub fn contiguous(name: &str, image: &Image, base: u32, end: u32) -> Result<Vec<
     Ok(bytes)
 }
 
-/// The flash's parts, each padded to whole sectors. The result is checked by the bootloader's own code before it is returned.
-pub fn compose(bootloader: &Image, app: &Image, version: [u8; 4]) -> Result<Vec<Load>, String> {
+/// What a header says beside the image.
+pub struct Release {
+    pub version: [u8; 4],
+    pub counter: u32,
+    pub date: Date,
+}
+
+/// An image with its signed header.
+pub struct SignedImage {
+    pub header: [u8; header::LEN],
+    pub image: Vec<u8>,
+}
+
+/// Signs the image of a slot. The result is checked by the bootloader's own code before it is returned.
+pub fn sign(
+    slot: SlotName,
+    app: &Image,
+    release: &Release,
+    signer: &KeyPair,
+) -> Result<SignedImage, String> {
+    let place = slot.slot();
+    let link_address = place.link_address();
+    let image = contiguous("app", app, link_address, link_address + IMAGE_MAX)?;
+    let public = *signer.pk;
+    let fields = Header {
+        board: BOARD_ADSBEE_1090,
+        link_address,
+        image_length: image.len() as u32,
+        version: release.version,
+        counter: release.counter,
+        image_sha256: Sha256::digest(&image).into(),
+        image_crc: crc32(&image),
+        key: key_id(&public),
+        date: release.date,
+    };
+    let header = fields.with_signature(&signer.sk.sign(fields.encode(), None));
+    let terms = Terms {
+        board: BOARD_ADSBEE_1090,
+        keys: Keys(&[public]),
+        floor: 0,
+    };
+    terms
+        .check_header(place, &header)
+        .and_then(|decoded| {
+            let mut check = ImageCheck::new(decoded);
+            check.take(&image);
+            check.verdict()
+        })
+        .map_err(|refusal| format!("the bootloader would refuse this app: {}", refusal.reason()))?;
+    Ok(SignedImage { header, image })
+}
+
+/// The update package: both links.
+pub fn package(slot_a: &SignedImage, slot_b: &SignedImage) -> Vec<u8> {
+    [
+        &boot_core::package::MAGIC[..],
+        &slot_a.header,
+        &slot_b.header,
+        &slot_a.image,
+        &slot_b.image,
+    ]
+    .concat()
+}
+
+/// The flash's parts for a first flashing, each padded to whole sectors.
+pub fn compose(bootloader: &Image, app: &SignedImage) -> Result<Vec<Load>, String> {
     let boot = contiguous(
         "bootloader",
         bootloader,
@@ -54,31 +126,24 @@ pub fn compose(bootloader: &Image, app: &Image, version: [u8; 4]) -> Result<Vec<
         XIP_BASE + BOOTLOADER_END,
     )?;
     check_boot2(&boot)?;
-    let image_at = SLOT_A.link_address();
-    let image = contiguous("app", app, image_at, image_at + IMAGE_MAX)?;
-    let header = Header {
-        board: BOARD_ADSBEE_1090,
-        link_address: image_at,
-        image_length: image.len() as u32,
-        version,
-        image_crc: crc32(&image),
-    };
-    let header_bytes = header.encode().to_vec();
-    boot_core::check_slot(SLOT_A, &BOARD_ADSBEE_1090, &header_bytes, &image)
-        .map_err(|refusal| format!("the bootloader would refuse this app: {}", refusal.reason()))?;
     const { assert!(SECTOR == HEADER_AREA as usize) };
     Ok(vec![
         Load {
             address: XIP_BASE,
             bytes: padded(boot),
         },
+        // What an older installation logged must not speak of this one.
         Load {
-            address: XIP_BASE + SLOT_A.header,
-            bytes: padded(header_bytes),
+            address: XIP_BASE + BOOT_LOG,
+            bytes: vec![ERASED; 2 * SECTOR],
         },
         Load {
-            address: image_at,
-            bytes: padded(image),
+            address: XIP_BASE + SLOT_A.header,
+            bytes: padded(app.header.to_vec()),
+        },
+        Load {
+            address: SLOT_A.link_address(),
+            bytes: padded(app.image.clone()),
         },
     ])
 }

@@ -9,7 +9,7 @@
 //! | `size` | flash and RAM by crate and layer against the committed budget |
 //! | `bench` | a benchmark; its last line is `result: key=value ...` |
 //!
-//! One file a command; what commands share has a file of its own (`thumb`, `elf`, `flash_image`, `uf2`, `hot`, `workspace`).
+//! One file a command; what commands share has a file of its own (`thumb`, `elf`, `keys`, `flash_image`, `uf2`, `hot`, `workspace`).
 
 mod bench;
 mod check;
@@ -19,6 +19,7 @@ mod elf;
 mod flash_image;
 mod fw;
 mod hot;
+mod keys;
 mod peers;
 mod size;
 mod test;

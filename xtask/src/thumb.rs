@@ -17,8 +17,8 @@ enum Toolchain {
     Debian,
 }
 
-/// Builds the packages; returns the folder their binaries are in.
-pub fn build(packages: &[&str]) -> Result<PathBuf, String> {
+/// Builds the packages with these environment variables; returns the folder their binaries are in.
+pub fn build(packages: &[&str], environment: &[(&str, &str)]) -> Result<PathBuf, String> {
     let target = workspace::target()?;
     let mut command = match toolchain()? {
         Toolchain::Rustup => {
@@ -33,6 +33,7 @@ pub fn build(packages: &[&str]) -> Result<PathBuf, String> {
         }
     };
     command.arg("build").current_dir(workspace::root()?);
+    command.envs(environment.iter().copied());
     if let Toolchain::Debian = toolchain()? {
         command.arg("-Zbuild-std=core,alloc");
     }

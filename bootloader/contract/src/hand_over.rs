@@ -1,7 +1,7 @@
 //! The hand-over words: watchdog scratch 2 and 3, which survive every reset but power-on and the RUN pin.
 //!
 //! ```text
-//! scratch 2   0x5351_kkcc   "SQ", kind, cause
+//! scratch 2   0x5351_kksc   "SQ", kind, slot (0 or 1, of "run" alone), cause
 //! scratch 3   its complement
 //! ```
 //! Scratch 0/1 and 4-7 belong to others (the ROM keeps its own vector in 4-7). Words whose complement does not match are
@@ -9,9 +9,11 @@
 //!
 //! | kind | written by | read by | means |
 //! |---|---|---|---|
-//! | run | bootloader, slot verified, then watchdog reset | bootloader | jump first thing: the peripherals are as after a reset |
+//! | run | bootloader, slot verified and chosen, then watchdog reset | bootloader | jump first thing: the peripherals are as after a reset |
 //! | report | bootloader, just before the jump | app | why this start happened; never taken for a request |
 //! | restart | app (`AT+REBOOT`, panic), then watchdog reset | bootloader | why the app gave up; the slot is verified again |
+
+use crate::boot_log::SlotName;
 
 /// Upper half of every hand-over word.
 const TAG: u32 = 0x5351_0000;
@@ -71,8 +73,8 @@ impl Cause {
 /// What the two scratch words say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HandOver {
-    /// Bootloader to itself: the slot is good, run it.
-    Run(Cause),
+    /// Bootloader to itself: this slot is good, run it.
+    Run(Cause, SlotName),
     /// Bootloader to app.
     Report(Cause),
     /// App to bootloader.
@@ -82,12 +84,12 @@ pub enum HandOver {
 impl HandOver {
     /// Scratch 2 and scratch 3.
     pub fn words(self) -> [u32; 2] {
-        let (kind, cause) = match self {
-            HandOver::Run(cause) => (KIND_RUN, cause),
-            HandOver::Report(cause) => (KIND_REPORT, cause),
-            HandOver::Restart(cause) => (KIND_RESTART, cause),
+        let (kind, slot, cause) = match self {
+            HandOver::Run(cause, slot) => (KIND_RUN, slot.index() as u32, cause),
+            HandOver::Report(cause) => (KIND_REPORT, 0, cause),
+            HandOver::Restart(cause) => (KIND_RESTART, 0, cause),
         };
-        let word = TAG | kind << 8 | cause.code();
+        let word = TAG | kind << 8 | slot << 4 | cause.code();
         [word, !word]
     }
 
@@ -96,11 +98,12 @@ impl HandOver {
         if complement != !word || word & 0xFFFF_0000 != TAG {
             return None;
         }
-        let cause = Cause::from_code(word & 0xFF)?;
-        match word >> 8 & 0xFF {
-            KIND_RUN => Some(HandOver::Run(cause)),
-            KIND_REPORT => Some(HandOver::Report(cause)),
-            KIND_RESTART => Some(HandOver::Restart(cause)),
+        let cause = Cause::from_code(word & 0xF)?;
+        match (word >> 8 & 0xFF, word >> 4 & 0xF) {
+            (KIND_RUN, 0) => Some(HandOver::Run(cause, SlotName::A)),
+            (KIND_RUN, 1) => Some(HandOver::Run(cause, SlotName::B)),
+            (KIND_REPORT, 0) => Some(HandOver::Report(cause)),
+            (KIND_RESTART, 0) => Some(HandOver::Restart(cause)),
             _ => None,
         }
     }
@@ -123,7 +126,8 @@ mod tests {
             .iter()
             .flat_map(|&cause| {
                 [
-                    HandOver::Run(cause),
+                    HandOver::Run(cause, SlotName::A),
+                    HandOver::Run(cause, SlotName::B),
                     HandOver::Report(cause),
                     HandOver::Restart(cause),
                 ]
@@ -151,11 +155,18 @@ mod tests {
 
     #[test]
     fn a_pair_of_somebody_else_says_nothing() {
-        let [word, _] = HandOver::Run(Cause::PowerOn).words();
+        let [word, _] = HandOver::Run(Cause::PowerOn, SlotName::A).words();
         for foreign in [word ^ 0x0001_0000, word & 0xFFFF, word | 0x8000_0000] {
             assert_eq!(HandOver::from_words([foreign, !foreign]), None);
         }
-        for unknown in [0x5351_0001, 0x5351_0401, 0x5351_0100, 0x5351_0106] {
+        for unknown in [
+            0x5351_0001,
+            0x5351_0401,
+            0x5351_0100,
+            0x5351_0106,
+            0x5351_0121,
+            0x5351_0211,
+        ] {
             assert_eq!(HandOver::from_words([unknown, !unknown]), None);
         }
     }

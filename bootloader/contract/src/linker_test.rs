@@ -1,12 +1,14 @@
 //! The linker scripts of the workspace say what [`crate::flash_map`] says.
 
 use crate::flash_map::{
-    BOOT2_LEN, BOOTLOADER, BOOTLOADER_END, IMAGE_MAX, SLOT_A, SRAM_BASE, SRAM_END, XIP_BASE,
+    BOOT2_LEN, BOOTLOADER, BOOTLOADER_END, IMAGE_MAX, SLOT_A, SLOT_B, SRAM_BASE, SRAM_END, XIP_BASE,
 };
 use std::string::String;
 
 const BOOTLOADER_X: &str = include_str!("../../../linker/bootloader.x");
-const APP_SLOT_A_X: &str = include_str!("../../../linker/app_slot_a.x");
+const APP_X: &str = include_str!("../../../linker/app.x");
+const SLOT_A_X: &str = include_str!("../../../linker/slot_a.x");
+const SLOT_B_X: &str = include_str!("../../../linker/slot_b.x");
 
 /// Origin and length of a region in a script's MEMORY block.
 fn region(script: &str, name: &str) -> (u32, u32) {
@@ -41,21 +43,20 @@ fn the_bootloader_is_linked_into_its_area() {
 }
 
 #[test]
-fn the_app_is_linked_into_slot_a() {
-    assert_eq!(
-        region(APP_SLOT_A_X, "FLASH"),
-        (SLOT_A.link_address(), IMAGE_MAX)
-    );
+fn the_app_is_linked_into_both_slots() {
+    for (script, slot) in [(SLOT_A_X, SLOT_A), (SLOT_B_X, SLOT_B)] {
+        assert_eq!(region(script, "FLASH"), (slot.link_address(), IMAGE_MAX));
+    }
 }
 
 #[test]
 fn both_scripts_stay_inside_sram() {
-    for script in [BOOTLOADER_X, APP_SLOT_A_X] {
+    for script in [BOOTLOADER_X, APP_X] {
         let (origin, length) = region(script, "RAM");
         assert_eq!((origin, length), (SRAM_BASE, 256 * 1024));
     }
-    let (x, x_len) = region(APP_SLOT_A_X, "SCRATCH_X");
-    let (y, y_len) = region(APP_SLOT_A_X, "SCRATCH_Y");
+    let (x, x_len) = region(APP_X, "SCRATCH_X");
+    let (y, y_len) = region(APP_X, "SCRATCH_Y");
     assert_eq!(x, SRAM_BASE + 256 * 1024);
     assert_eq!(y, x + x_len);
     assert_eq!(y + y_len, SRAM_END);

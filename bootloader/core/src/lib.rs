@@ -29,6 +29,7 @@ pub mod slot;
 pub mod update;
 pub mod ymodem;
 
+use boot_contract::boot_log::SlotName;
 use boot_contract::hand_over::{Cause, HandOver};
 
 /// What reset the chip, as its registers say; the hand-over words know more when they hold.
@@ -46,8 +47,8 @@ pub enum ResetSource {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// Jump into the slot at once, leaving this report.
-    Jump(Cause),
-    /// Verify the slot, for a start of this cause.
+    Jump(Cause, SlotName),
+    /// Verify the slots, for a start of this cause.
     Verify(Cause),
 }
 
@@ -58,7 +59,7 @@ pub fn start(words: [u32; 2], source: ResetSource) -> Start {
         return Start::Verify(Cause::PowerOn);
     }
     match (HandOver::from_words(words), source) {
-        (Some(HandOver::Run(cause)), ResetSource::WatchdogForce) => Start::Jump(cause),
+        (Some(HandOver::Run(cause, slot)), ResetSource::WatchdogForce) => Start::Jump(cause, slot),
         (Some(HandOver::Restart(cause)), _) => Start::Verify(cause),
         (_, ResetSource::WatchdogTimer) => Start::Verify(Cause::Watchdog),
         (_, _) => Start::Verify(Cause::Other),
@@ -71,16 +72,18 @@ mod tests {
 
     #[test]
     fn a_run_request_after_a_forced_reset_jumps_with_its_cause() {
-        let words = HandOver::Run(Cause::Panic).words();
-        assert_eq!(
-            start(words, ResetSource::WatchdogForce),
-            Start::Jump(Cause::Panic)
-        );
+        for slot in SlotName::ALL {
+            let words = HandOver::Run(Cause::Panic, slot).words();
+            assert_eq!(
+                start(words, ResetSource::WatchdogForce),
+                Start::Jump(Cause::Panic, slot)
+            );
+        }
     }
 
     #[test]
     fn a_run_request_that_power_on_left_behind_is_not_believed() {
-        let words = HandOver::Run(Cause::PowerOn).words();
+        let words = HandOver::Run(Cause::PowerOn, SlotName::A).words();
         assert_eq!(
             start(words, ResetSource::PowerOn),
             Start::Verify(Cause::PowerOn)
@@ -117,7 +120,7 @@ mod tests {
 
     #[test]
     fn half_a_word_pair_verifies() {
-        let [word, _] = HandOver::Run(Cause::PowerOn).words();
+        let [word, _] = HandOver::Run(Cause::PowerOn, SlotName::A).words();
         assert_eq!(
             start([word, 0], ResetSource::WatchdogForce),
             Start::Verify(Cause::Other)

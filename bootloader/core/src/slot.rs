@@ -38,6 +38,8 @@ pub enum Refusal {
     Rejected,
     /// The flash could not be read.
     Flash,
+    /// The boot log could not be written.
+    Log,
 }
 
 impl Refusal {
@@ -60,6 +62,7 @@ impl Refusal {
             Refusal::ResetVector => "reset vector",
             Refusal::Rejected => "rejected after its tries",
             Refusal::Flash => "flash read",
+            Refusal::Log => "boot log write",
         }
     }
 }

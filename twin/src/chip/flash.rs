@@ -164,6 +164,16 @@ impl Flash {
         true
     }
 
+    /// The SSI as the ROM sets it for commands: bytes both ways.
+    pub fn leave_xip(&mut self) {
+        self.registers[CTRLR0] = 7 << 16;
+    }
+
+    /// The SSI is on and fetches what an address asks for: CTRLR0's TMOD is "EEPROM read" (datasheet 4.10.13).
+    pub fn shows_xip(&self) -> bool {
+        self.registers[2] & 1 != 0 && self.registers[0] >> 8 & 3 == 3
+    }
+
     fn starts_command(&self, byte: u8) -> bool {
         !self.command.is_empty() && matches!(byte, 0x05 | 0x06 | 0x35 | 0x01 | 0x31 | 0xeb)
     }

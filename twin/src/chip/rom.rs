@@ -129,6 +129,7 @@ impl Chip {
             }
             b"IF" | b"EX" => {
                 self.bus.xip.command_mode = true;
+                self.bus.flash.leave_xip();
                 (None, 0)
             }
             b"FC" => {

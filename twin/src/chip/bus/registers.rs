@@ -283,7 +283,14 @@ impl Bus {
 
     pub(super) fn write_flash_interface(&mut self, address: u32, value: u32) -> bool {
         match address >> 24 {
-            0x18 => self.flash.write_ssi(address & 0xff, value),
+            0x18 => {
+                let ok = self.flash.write_ssi(address & 0xff, value);
+                // boot2, run again after an erase or a program, sets the SSI up for XIP and switches it on.
+                if self.flash.shows_xip() {
+                    self.xip.command_mode = false;
+                }
+                ok
+            }
             0x14 => self.xip.write(address & 0xff, value, self.now),
             _ => false,
         }
