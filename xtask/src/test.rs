@@ -22,6 +22,11 @@ pub fn run() -> Result<(), String> {
                 .into(),
         );
     }
+    if Command::new("sb").arg("--version").output().is_err() {
+        return Err(
+            "sb is missing, which sends YMODEM to the bootloader's receiver; install it: apt-get install lrzsz".into(),
+        );
+    }
     check::run()?;
     println!("test: firmware images");
     fw::run()?;
