@@ -22,6 +22,8 @@ mod profile;
 mod pwm;
 mod rom;
 mod sio;
+mod syscfg;
+mod systick;
 mod time;
 mod timer;
 pub mod uart;

@@ -34,7 +34,7 @@ pub use xip::{Closed, Xip};
 
 use super::adc::Adc;
 use super::clocks::Clocks;
-use super::cpu::ppb::{Nvic, Ppb};
+use super::cpu::ppb::{NMI_PENDING, Nvic, Ppb};
 use super::crystal::Crystal;
 use super::dma::Dma;
 use super::flash::Flash;
@@ -44,6 +44,8 @@ use super::pins::Pins;
 use super::pio::Pio;
 use super::pwm::Pwm;
 use super::sio::Sio;
+use super::syscfg::Syscfg;
+use super::systick::SysTick;
 use super::time::Instant;
 use super::timer::{Timer, Watchdog};
 use super::uart::Uart;
@@ -121,6 +123,10 @@ pub struct Bus {
     pub i2c: [I2c; 2],
     pub adc: Adc,
     pub timer: Timer,
+    pub systick: [SysTick; 2],
+    pub syscfg: Syscfg,
+    /// The core's NMI input, as it was.
+    nmi: [bool; 2],
     pub watchdog: Watchdog,
     pub clocks: Clocks,
     pub sio: Sio,
@@ -186,6 +192,9 @@ impl Bus {
             i2c: [I2c::new(0), I2c::new(1)],
             adc: Adc::default(),
             timer: Timer::default(),
+            systick: [SysTick::default(); 2],
+            syscfg: Syscfg::default(),
+            nmi: [false; 2],
             watchdog: Watchdog::default(),
             clocks: Clocks::default(),
             sio: Sio::default(),
@@ -233,6 +242,8 @@ impl Bus {
         }
         self.ppb = [Ppb::new(), Ppb::new()];
         self.nvic = [Nvic::new(), Nvic::new()];
+        self.systick = [SysTick::default(); 2];
+        self.nmi = [false; 2];
         self.event = [false; 2];
         self.wake_at = [None; 2];
         self.asleep = [false; 2];
@@ -294,6 +305,9 @@ impl Bus {
         }
         self.adc
             .set_clock(self.clocks.adc_hz(), self.sys_hz, self.now);
+        for systick in &mut self.systick {
+            systick.set_reference(tick, self.now);
+        }
         self.timer.set_tick(tick, self.now);
         self.watchdog.set_tick(tick, self.now);
     }
@@ -381,6 +395,7 @@ impl Bus {
     pub fn update_lines(&mut self) {
         if std::mem::take(&mut self.lines_dirty) {
             self.lines = self.compute_lines();
+            self.update_nmi();
         }
         if self.lines == [0; 2] && self.asleep == [false; 2] {
             return;
@@ -391,6 +406,17 @@ impl Bus {
             if self.asleep[core] && self.wake_at[core].is_none() && self.can_wake(core) {
                 self.wake_at[core] = Some(self.now);
             }
+        }
+    }
+
+    /// A line that SYSCFG lets through to NMI makes it pending where it rises.
+    fn update_nmi(&mut self) {
+        for core in 0..2 {
+            let level = self.lines[core] & self.syscfg.nmi_mask[core] != 0;
+            if level && !self.nmi[core] {
+                self.ppb[core].icsr |= NMI_PENDING;
+            }
+            self.nmi[core] = level;
         }
     }
 

@@ -1,10 +1,10 @@
-//! The private peripheral bus of each core: NVIC and system control block (ARMv6-M B3.2, B3.4).
+//! The private peripheral bus of each core: SysTick, NVIC and system control block (ARMv6-M B3.2 to B3.4).
 
 use super::{Bus, ResetCause};
 
 impl Bus {
-    pub(super) fn read_ppb(&self, address: u32) -> Option<u32> {
-        let core = self.active;
+    pub(super) fn read_ppb(&mut self, address: u32) -> Option<u32> {
+        let (core, now) = (self.active, self.now);
         let nvic = &self.nvic[core];
         Some(match address & 0xffff {
             0xe100 | 0xe180 => nvic.enabled,
@@ -14,6 +14,7 @@ impl Bus {
                 u32::from_le_bytes(nvic.priority[at..at + 4].try_into().expect("four bytes"))
             }
             0xed00 | 0xed04 | 0xed08 | 0xed0c | 0xed1c | 0xed20 => self.ppb[core].read32(address),
+            0xe010..=0xe01c => self.systick[core].read((address & 0xf) & !3, now),
             0xed10 => 0,
             // CCR: stack aligned to 8, unaligned accesses trap.
             0xed14 => 0x208,
@@ -25,6 +26,10 @@ impl Bus {
         let core = self.active;
         let active = (self.ppb[core].active >> 16) as u32;
         match address & 0xffff {
+            0xe010..=0xe01c => {
+                let now = self.now;
+                self.systick[core].write((address & 0xf) & !3, value, now);
+            }
             0xe100 => self.nvic[core].enabled |= value & 0x03ff_ffff,
             0xe180 => self.nvic[core].enabled &= !value,
             0xe200 => self.nvic[core].pending |= value & 0x03ff_ffff,

@@ -5,6 +5,7 @@ use crate::chip::dma::Dma;
 use crate::chip::pio::Pio;
 use crate::chip::pwm::Pwm;
 use crate::chip::sio::Effect;
+use crate::chip::syscfg::Syscfg;
 use crate::chip::usb::Usb;
 
 impl Bus {
@@ -32,6 +33,9 @@ impl Bus {
         }
         if on(reset::PWM) {
             self.pwm = Pwm::default();
+        }
+        if on(reset::SYSCFG) {
+            self.syscfg = Syscfg::default();
         }
         if on(reset::TIMER) {
             self.timer.reset(now);
@@ -64,7 +68,7 @@ impl Bus {
         match address >> 28 {
             0x1 => self.read_flash_interface(address),
             0xd => {
-                let pins = self.pins.synced(now, 0);
+                let pins = self.pins.synced(now, self.syscfg.in_sync_bypass);
                 self.sio.read(self.active, offset, pins)
             }
             0xe => self.read_ppb(address),
@@ -75,11 +79,7 @@ impl Bus {
                     0x04 => Some(2),
                     _ => None,
                 },
-                0x4000_4000 => match offset {
-                    // PROC0_NMI_MASK, PROC1_NMI_MASK, PROC_CONFIG, PROC_IN_SYNC_BYPASS: reset values.
-                    0x00..=0x0c => Some(0),
-                    _ => None,
-                },
+                0x4000_4000 => self.syscfg.read(offset),
                 0x4000_8000 => self.clocks.read_clocks(offset),
                 0x4000_c000 => match offset {
                     0 => Some(self.resets),
@@ -163,6 +163,7 @@ impl Bus {
             _ => {}
         }
         match base {
+            0x4000_4000 => return self.syscfg.write(offset, value),
             0x4000_8000 => {
                 let ok = self.clocks.write_clocks(offset, value);
                 self.clocks_changed();

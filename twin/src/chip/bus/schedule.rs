@@ -4,6 +4,7 @@
 //! word they move; all others are in the table here.
 
 use super::{Bus, ResetCause};
+use crate::chip::cpu::ppb::SYSTICK_PENDING;
 
 /// Peripherals with deadlines, in the order in which those due at the same cycle act.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -12,16 +13,19 @@ enum Actor {
     Uart(usize),
     I2c(usize),
     Adc,
+    SysTick(usize),
     Watchdog,
 }
 
-const ACTORS: [Actor; 7] = [
+const ACTORS: [Actor; 9] = [
     Actor::Timer,
     Actor::Uart(0),
     Actor::Uart(1),
     Actor::I2c(0),
     Actor::I2c(1),
     Actor::Adc,
+    Actor::SysTick(0),
+    Actor::SysTick(1),
     Actor::Watchdog,
 ];
 
@@ -47,6 +51,7 @@ impl Bus {
             Actor::Uart(n) => self.uart[n].next_event(),
             Actor::I2c(n) => self.i2c[n].next_event(),
             Actor::Adc => self.adc.next_event(),
+            Actor::SysTick(core) => self.systick[core].next_event(),
             Actor::Watchdog => self.watchdog.next_event(),
         }
     }
@@ -67,6 +72,11 @@ impl Bus {
                 self.resolve_pins();
             }
             Actor::Adc => self.advance_adc(),
+            Actor::SysTick(core) => {
+                if self.systick[core].advance(now) {
+                    self.ppb[core].icsr |= SYSTICK_PENDING;
+                }
+            }
             Actor::Watchdog => {
                 if self.watchdog.bites(now) && self.reset_request.is_none() {
                     self.reset_request = Some(ResetCause::WatchdogTimer);
