@@ -4,8 +4,11 @@
 //!   frame, from SP up: r0 r1 r2 r3 r12 lr pc xpsr (bit 9: SP was moved by 4 to align it)
 //!   lr in the handler: fffffff1 to a handler, fffffff9 to a thread on MSP, fffffffd to one on PSP
 //! ```
-//! Entry takes 15 cycles (TRM 3.6). The return is not in the TRM's table; [`RETURN`] is an assumption. No tail chaining: a return
-//! restores its frame even where the next handler stacks it again, which is what a program can see of it but for the cycles.
+//! Entry takes 15 cycles (TRM 3.6). The return is not in the TRM's table; [`RETURN`] is an assumption, and so is [`CHAIN`].
+//!
+//! *Tail chaining*: a return with another exception waiting that may run goes straight to its handler; the frame stays where it is.
+//! *Late arrival*: a more urgent exception that comes before the handler's first instruction takes over the frame just stacked, and the
+//! first one waits again (both: Cortex-M0+ Devices Generic User Guide 2.3.6).
 
 use super::ppb::{NMI_PENDING, PENDSV_PENDING, SYSTICK_PENDING};
 use super::{Bus, Cause, Cpu};
@@ -14,6 +17,8 @@ use super::{Bus, Cause, Cpu};
 const ENTRY: u64 = 15;
 /// Cycles of a return beyond those of the BX or POP: eight words and the refill of the pipeline.
 const RETURN: u64 = 10;
+/// Cycles from a return to the first instruction of a handler that is chained: the vector and the refill of the pipeline.
+const CHAIN: u64 = 6;
 /// A priority below all others.
 const IDLE: i16 = 0x100;
 const NMI: u16 = 2;
@@ -38,14 +43,37 @@ impl Cpu {
         if priority >= self.running_priority(bus) {
             return false;
         }
-        match number {
-            NMI => bus.ppb[k].icsr &= !NMI_PENDING,
-            PENDSV => bus.ppb[k].icsr &= !PENDSV_PENDING,
-            SYSTICK => bus.ppb[k].icsr &= !SYSTICK_PENDING,
-            _ => bus.nvic[k].clear_pending((number - INTERRUPT) as u8),
+        self.wait(bus, number, false);
+        if self.entered_at == Some(self.time) {
+            // Late arrival.
+            let first = self.regs.ipsr as u16;
+            self.wait(bus, first, true);
+            bus.ppb[k].clear_active(first);
+            self.vector(bus, number);
+        } else {
+            self.enter(bus, number, self.regs.pc());
         }
-        self.enter(bus, number, self.regs.pc());
         true
+    }
+
+    /// Sets or clears the pending bit of an exception.
+    fn wait(&self, bus: &mut Bus, number: u16, pending: bool) {
+        let (word, bit) = match number {
+            NMI => (&mut bus.ppb[self.id].icsr, NMI_PENDING),
+            PENDSV => (&mut bus.ppb[self.id].icsr, PENDSV_PENDING),
+            SYSTICK => (&mut bus.ppb[self.id].icsr, SYSTICK_PENDING),
+            INTERRUPT.. => (
+                &mut bus.nvic[self.id].pending,
+                1 << ((number - INTERRUPT) & 31),
+            ),
+            // SVCall and HardFault do not wait.
+            _ => return,
+        };
+        if pending {
+            *word |= bit;
+        } else {
+            *word &= !bit;
+        }
     }
 
     /// Priority and number; of equals the lower number.
@@ -140,13 +168,22 @@ impl Cpu {
             (false, false) => 0xffff_fff9,
             (false, true) => 0xffff_fffd,
         };
-        self.regs.ipsr = u32::from(number);
         self.regs.control &= !2;
         self.regs.unbank_sp();
+        self.vector(bus, number);
+        self.time = time + ENTRY;
+        // Only what can wait can be overtaken.
+        self.entered_at = (number > HARD_FAULT && number != SVCALL).then_some(self.time);
+    }
+
+    /// Goes to the handler; the frame is stacked and lr says how to return.
+    fn vector(&mut self, bus: &mut Bus, number: u16) {
+        let time = self.time;
+        self.regs.ipsr = u32::from(number);
         let vector = bus.ppb[self.id].vtor.wrapping_add(4 * u32::from(number));
         let handler = self.load::<4, false>(bus, vector);
+        self.time = time;
         bus.ppb[self.id].mark_active(number);
-        self.time = time + ENTRY;
         // Entry and return set the event register (B1.5.18).
         bus.event[self.id] = true;
         bus.attention = true;
@@ -171,6 +208,15 @@ impl Cpu {
                 return;
             }
         };
+        if let Some((priority, next)) = self.most_urgent(bus)
+            && priority < self.running_priority(bus)
+        {
+            self.wait(bus, next, false);
+            self.regs.r[14] = value;
+            self.vector(bus, next);
+            self.time += CHAIN;
+            return;
+        }
         self.regs.bank_sp();
         let frame = if to_psp { self.regs.psp } else { self.regs.msp };
         let time = self.time;
@@ -198,3 +244,7 @@ impl Cpu {
         self.branch(pc);
     }
 }
+
+#[cfg(test)]
+#[path = "exceptions_tests.rs"]
+mod tests;

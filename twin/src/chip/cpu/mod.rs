@@ -56,6 +56,8 @@ pub struct Cpu {
     pub stack: StackWatch,
     /// Address / 4 of the word the last fetch brought.
     word: u32,
+    /// When the handler of an exception just entered begins, until it has.
+    entered_at: Option<u64>,
     id: usize,
 }
 
@@ -71,6 +73,7 @@ impl Cpu {
             fault: None,
             stack: StackWatch::default(),
             word: NO_WORD,
+            entered_at: None,
             id,
         }
     }
