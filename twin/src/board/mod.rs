@@ -2,7 +2,11 @@
 //!
 //! Not modelled yet: EEPROM, ADC inputs, GNSS receiver, ESP32.
 
+pub mod eeprom;
+pub mod gnss;
 pub mod kind;
+pub mod pin_serial;
+pub mod potentiometer;
 
 use std::path::Path;
 

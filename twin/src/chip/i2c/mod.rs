@@ -19,13 +19,15 @@ mod engine;
 mod registers;
 mod wire;
 
+use std::any::Any;
+
 use super::time::Instant;
 use engine::{Engine, Step};
 use registers::Registers;
 use wire::Wire;
 
 /// A device on an I2C bus.
-pub trait I2cTarget: Send {
+pub trait I2cTarget: Send + Any {
     /// START or repeated START with this 7-bit address: acknowledged?
     fn start(&mut self, address: u8, read: bool, time_ps: u128) -> bool;
     /// A byte from the controller: acknowledged?
@@ -87,6 +89,12 @@ impl I2c {
     /// The devices on the wire.
     pub fn targets(&mut self) -> &mut [Box<dyn I2cTarget>] {
         &mut self.wire.targets
+    }
+
+    /// The device of this kind on the wire, the first if there are several.
+    pub fn find<T: I2cTarget>(&mut self) -> Option<&mut T> {
+        let mut targets = self.wire.targets.iter_mut();
+        targets.find_map(|t| (t.as_mut() as &mut dyn Any).downcast_mut::<T>())
     }
 
     /// Lays the wire on these GPIOs.
