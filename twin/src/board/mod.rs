@@ -5,6 +5,7 @@
 pub mod eeprom;
 pub mod gnss;
 pub mod kind;
+pub mod line_noise;
 pub mod pin_serial;
 pub mod potentiometer;
 

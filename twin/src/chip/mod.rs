@@ -14,6 +14,7 @@ pub mod cpu;
 pub mod crystal;
 mod dma;
 pub mod flash;
+pub mod flash_journal;
 pub mod i2c;
 pub mod outside;
 pub mod pins;
