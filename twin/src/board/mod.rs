@@ -1,24 +1,39 @@
-//! A board around the chip: flash, radio on PULSES, a USB host on CONSOLE, far ends on the UARTs. The nets are in [`kind`].
+//! A board around the chip: flash, radio on PULSES, a USB host on CONSOLE, far ends on the serial ports, EEPROM and potentiometer on
+//! I2C, trigger levels and RSSI on the ADC, a GNSS receiver. The nets are in [`kind`].
 //!
-//! Not modelled yet: EEPROM, ADC inputs, GNSS receiver, ESP32.
+//! ```text
+//!   radio ─ PULSES ─┐                       ┌─ CONSOLE (USB host), COMMS_UART, ESP32, FLARM        ports
+//!   RSSI, trigger ──┤ chip ─ I2C ─ EEPROM   ├─ GNSS: NMEA and PPS in true time                    gnss
+//!   crystal ────────┘                       └─ faults, planned and carried out                    faults
+//! ```
 
 pub mod eeprom;
+mod faults;
 pub mod gnss;
 pub mod kind;
 pub mod line_noise;
 pub mod pin_serial;
+mod ports;
 pub mod potentiometer;
 
 use std::path::Path;
 
+use eeprom::Eeprom;
+use gnss::Gnss;
 use kind::{ADSBEE_1090, Kind};
+use pin_serial::PinSerial;
+pub use ports::{PortName, QUEUE, WireNoise};
+use potentiometer::Potentiometer;
 
 use crate::chip::bus::TriggerNet;
 use crate::chip::crystal::{Crystal, Deviation};
 use crate::chip::flash::Flash;
 use crate::chip::{Chip, Halt};
+use crate::fault::{Memory, Planned};
 use crate::front_end::PulseSource;
+use crate::front_end::trigger_level::TriggerLevel;
 use crate::image;
+use crate::source::random::Random;
 
 /// The flash's unique id, where nobody names another.
 const UNIQUE_ID: [u8; 8] = *b"SQUITTER";
@@ -32,6 +47,8 @@ pub const TICK_HZ: u64 = 120_000_000;
 const START_SECONDS: u64 = 4;
 /// How long a trigger level may take to settle behind its RC, ms: fourteen time constants.
 const SETTLE_MS: u64 = 140;
+/// FLARM's usual rate, bits a second (its data port specification).
+const FLARM_BAUD: u32 = 19_200;
 
 /// Why the board did not do what was asked.
 #[derive(Debug, thiserror::Error)]
@@ -40,8 +57,17 @@ pub enum Error {
     Image(#[from] image::Error),
     #[error("the chip stopped: {0}")]
     Halted(#[from] Halt),
-    #[error("the image did not start capture within {START_SECONDS} s; COMMS_UART said: {comms:?}")]
-    NoCapture { comms: String },
+    #[error(
+        "the image did not start capture within {START_SECONDS} s; {why}COMMS_UART said: {comms:?}"
+    )]
+    NoCapture { comms: String, why: &'static str },
+    #[error("the board {board} has no {what}")]
+    NoSuchPart {
+        board: &'static str,
+        what: &'static str,
+    },
+    #[error("{memory:?} has no byte {address:#x}")]
+    NoSuchByte { memory: Memory, address: u32 },
     #[error(
         "the image did not open its USB console within {START_SECONDS} s; COMMS_UART said: {comms:?}; USB: {usb}"
     )]
@@ -49,10 +75,18 @@ pub enum Error {
 }
 
 /// What a board is built from.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
     pub kind: Kind,
     pub crystal: Deviation,
+    /// The GNSS receiver's settings; `None` leaves its place open for a program outside.
+    pub gnss: Option<gnss::Options>,
+    /// Contents of the EEPROM; `None` is a new one.
+    pub eeprom: Option<Vec<u8>>,
+    /// Rate of FLARM's serial line, bits a second.
+    pub flarm_baud: u32,
+    /// Seed of all that is random about faults.
+    pub seed: u64,
 }
 
 impl Default for Setup {
@@ -60,6 +94,10 @@ impl Default for Setup {
         Self {
             kind: ADSBEE_1090,
             crystal: Deviation::default(),
+            gnss: None,
+            eeprom: None,
+            flarm_baud: FLARM_BAUD,
+            seed: 1,
         }
     }
 }
@@ -70,6 +108,14 @@ pub struct Board {
     pub kind: Kind,
     /// Cycle of the first sample of the playback, once it runs.
     playback: Option<Playback>,
+    /// Faults that have not happened yet.
+    planned: Vec<Planned>,
+    /// Memories in which bits turn over at random.
+    flipping: Vec<Memory>,
+    /// How often the supply failed or dipped, and how many bits turned over.
+    pub power_cuts: u64,
+    pub flips: u64,
+    random: Random,
 }
 
 /// Where a playback stands in the device's time.
@@ -101,17 +147,63 @@ impl Board {
         let bus = &mut chip.bus;
         bus.crystal = Crystal::new(setup.crystal);
         let nets = kind.trigger_levels.iter();
-        bus.trigger_nets = nets.map(|net| TriggerNet::new(net.pwm)).collect();
+        bus.trigger_nets = nets
+            .map(|net| TriggerNet {
+                gpio: net.pwm,
+                adc: net.adc,
+                level: TriggerLevel::default(),
+            })
+            .collect();
+        bus.apply_trigger_level();
+        bus.rssi_adc = Some(kind.rssi_adc);
+        bus.line_noise = [WireNoise::new(setup.seed), WireNoise::new(setup.seed ^ 2)];
         // UART lines idle high.
         bus.pins.drive(kind.comms_rx, true);
-        if let Some(gnss) = kind.gnss {
-            bus.pins.drive(gnss.rx, true);
-        }
+        bus.pins.drive(kind.flarm_rx, true);
         bus.pins.drive(kind.pulses, false);
-        Self {
+        bus.attach(Box::new(PinSerial::new(kind.flarm_rx, setup.flarm_baud)));
+        let mut board = Self {
             chip,
             kind,
             playback: None,
+            planned: Vec::new(),
+            flipping: Vec::new(),
+            power_cuts: 0,
+            flips: 0,
+            random: Random::new(setup.seed),
+        };
+        board.wire_i2c(setup);
+        board.wire_gnss(setup);
+        board
+    }
+
+    fn wire_i2c(&mut self, setup: &Setup) {
+        let Some(nets) = self.kind.i2c else { return };
+        let i2c = &mut self.chip.bus.i2c[nets.controller];
+        i2c.wire_to(nets.sda, nets.scl);
+        let mut eeprom = Eeprom::new(nets.eeprom);
+        if let Some(contents) = &setup.eeprom {
+            let count = contents.len().min(eeprom::BYTES);
+            eeprom.bytes_mut()[..count].copy_from_slice(&contents[..count]);
+        }
+        i2c.attach(Box::new(eeprom));
+        if let Some(address) = nets.potentiometer {
+            i2c.attach(Box::new(Potentiometer::new(address)));
+        }
+    }
+
+    fn wire_gnss(&mut self, setup: &Setup) {
+        let Some(nets) = self.kind.gnss else { return };
+        self.chip.bus.pins.drive(nets.rx, true);
+        if let Some(options) = &setup.gnss {
+            self.chip.bus.pins.drive(nets.pps, false);
+            let wired = gnss::Nets {
+                uart: nets.uart,
+                pps: nets.pps,
+                enable: nets.enable,
+            };
+            let receiver = Gnss::new(options.clone(), wired);
+            self.chip.bus.attach(Box::new(receiver));
         }
     }
 
@@ -123,7 +215,7 @@ impl Board {
     /// Runs for a number of system cycles.
     pub fn run_cycles(&mut self, cycles: u64) -> Result<(), Error> {
         let until = self.chip.now() + cycles;
-        Ok(self.chip.run_until(until)?)
+        self.run_to(until)
     }
 
     /// Runs for a time, at whatever rate the system clock has.
@@ -163,8 +255,14 @@ impl Board {
         if self.run_until(START_SECONDS, running)? {
             return Ok(());
         }
+        let why = if self.chip.bus.crystal_is_dead() {
+            "the crystal does not oscillate, so XOSC STATUS.STABLE stays 0 and the firmware waits for it; "
+        } else {
+            ""
+        };
         Err(Error::NoCapture {
             comms: self.comms_text(),
+            why,
         })
     }
 
@@ -206,40 +304,6 @@ impl Board {
     /// The source is at its end and all its edges were played.
     pub fn playback_finished(&self) -> bool {
         self.chip.bus.pins.playback_finished()
-    }
-
-    /// Bytes typed on the console.
-    pub fn console_write(&mut self, bytes: &[u8]) {
-        self.chip.bus.usb_host.to_device.extend(bytes);
-    }
-
-    /// Bytes the console has said since the last call.
-    pub fn console_read(&mut self) -> Vec<u8> {
-        self.chip.bus.usb_host.from_device.drain(..).collect()
-    }
-
-    /// Bytes for the device from the far end of COMMS_UART.
-    pub fn comms_write(&mut self, bytes: &[u8]) {
-        let now = self.chip.now();
-        self.chip.bus.uart[1].send(bytes, now);
-    }
-
-    /// Bytes COMMS_UART has sent since the last call.
-    pub fn comms_read(&mut self) -> Vec<u8> {
-        let sent = &mut self.chip.bus.uart[1].sent;
-        sent.drain(..).map(|(_, byte)| byte).collect()
-    }
-
-    /// Bytes for the device from the GNSS receiver's place.
-    pub fn gnss_write(&mut self, bytes: &[u8]) {
-        let now = self.chip.now();
-        self.chip.bus.uart[0].send(bytes, now);
-    }
-
-    /// Bytes GNSS_UART has sent since the last call.
-    pub fn gnss_read(&mut self) -> Vec<u8> {
-        let sent = &mut self.chip.bus.uart[0].sent;
-        sent.drain(..).map(|(_, byte)| byte).collect()
     }
 
     /// The status LED.

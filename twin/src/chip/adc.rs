@@ -137,6 +137,11 @@ impl Adc {
         self.inputs[channel] = Some(input);
     }
 
+    /// The input that the next conversion holds.
+    pub fn selected(&self) -> usize {
+        (self.cs >> 12 & 7) as usize
+    }
+
     /// clk_adc or clk_sys changed at cycle `now`.
     pub fn set_clock(&mut self, adc_hz: u64, sys_hz: u64, now: u64) {
         self.clock.set(adc_hz, sys_hz, now);
@@ -179,7 +184,7 @@ impl Adc {
 
     /// Holds the selected input at tick `start`.
     fn begin(&mut self, start: u64, time_ps: u128) {
-        let channel = (self.cs >> 12 & 7) as usize;
+        let channel = self.selected();
         let volts = self.volts(channel, time_ps);
         let word = if volts.is_nan() {
             FAILED

@@ -37,18 +37,20 @@ impl Pll {
         self.pwr & 0x21 == 0 && self.fbdiv >= 16
     }
 
-    fn hz(&self) -> u64 {
+    /// Output for a crystal at `xosc_hz` (0: it stands, so the PLL cannot lock).
+    fn hz(&self, xosc_hz: u64) -> u64 {
         if !self.locked() || self.pwr & 8 != 0 {
             return 0;
         }
-        let reference = XOSC_HZ / u64::from((self.cs & 0x3f).max(1));
+        let reference = xosc_hz / u64::from((self.cs & 0x3f).max(1));
         let post = u64::from((self.prim >> 16 & 7).max(1) * (self.prim >> 12 & 7).max(1));
         reference * u64::from(self.fbdiv & 0xfff) / post
     }
 
-    fn read(&self, offset: u32) -> Option<u32> {
+    fn read(&self, offset: u32, xosc_hz: u64) -> Option<u32> {
+        let locked = self.locked() && xosc_hz != 0;
         Some(match offset {
-            0x0 => self.cs | u32::from(self.locked()) << 31,
+            0x0 => self.cs | u32::from(locked) << 31,
             0x4 => self.pwr,
             0x8 => self.fbdiv,
             0xc => self.prim,
@@ -73,6 +75,7 @@ pub struct Clocks {
     registers: [u32; 0xc8 / 4],
     xosc_ctrl: u32,
     xosc_startup: u32,
+    crystal_dead: bool,
     pll: [Pll; 2],
     rosc: [u32; 8],
 }
@@ -96,6 +99,7 @@ impl Default for Clocks {
             registers,
             xosc_ctrl: 0,
             xosc_startup: 0xc4,
+            crystal_dead: false,
             pll: [Pll::RESET; 2],
             rosc: [0xaa0; 8],
         }
@@ -104,7 +108,7 @@ impl Default for Clocks {
 
 impl Clocks {
     fn xosc_running(&self) -> bool {
-        self.xosc_ctrl >> 12 & 0xfff == 0xfab
+        !self.crystal_dead && self.xosc_ctrl >> 12 & 0xfff == 0xfab
     }
 
     fn xosc_hz(&self) -> u64 {
@@ -123,7 +127,7 @@ impl Clocks {
     pub fn ref_hz(&self) -> u64 {
         let source = match self.registers[REF] & 3 {
             0 => ROSC_HZ,
-            1 if self.registers[REF] >> 5 & 3 == 0 => self.pll[1].hz(),
+            1 if self.registers[REF] >> 5 & 3 == 0 => self.pll[1].hz(self.xosc_hz()),
             2 => self.xosc_hz(),
             _ => 0,
         };
@@ -137,8 +141,8 @@ impl Clocks {
             self.ref_hz()
         } else {
             match ctrl >> 5 & 7 {
-                0 => self.pll[0].hz(),
-                1 => self.pll[1].hz(),
+                0 => self.pll[0].hz(self.xosc_hz()),
+                1 => self.pll[1].hz(self.xosc_hz()),
                 2 => ROSC_HZ,
                 3 => self.xosc_hz(),
                 _ => 0,
@@ -152,8 +156,8 @@ impl Clocks {
         let ctrl = self.registers[0x54 / 4];
         let source = match ctrl >> 5 & 7 {
             _ if ctrl & (1 << 11) == 0 => 0,
-            0 => self.pll[1].hz(),
-            1 => self.pll[0].hz(),
+            0 => self.pll[1].hz(self.xosc_hz()),
+            1 => self.pll[0].hz(self.xosc_hz()),
             2 => ROSC_HZ,
             3 => self.xosc_hz(),
             _ => 0,
@@ -166,8 +170,8 @@ impl Clocks {
         let ctrl = self.registers[0x60 / 4];
         let source = match ctrl >> 5 & 7 {
             _ if ctrl & (1 << 11) == 0 => 0,
-            0 => self.pll[1].hz(),
-            1 => self.pll[0].hz(),
+            0 => self.pll[1].hz(self.xosc_hz()),
+            1 => self.pll[0].hz(self.xosc_hz()),
             2 => ROSC_HZ,
             3 => self.xosc_hz(),
             _ => 0,
@@ -192,7 +196,20 @@ impl Clocks {
 
     /// Back to reset: the chip runs from the ring oscillator.
     pub fn reset(&mut self) {
-        *self = Self::default();
+        *self = Self {
+            crystal_dead: self.crystal_dead,
+            ..Self::default()
+        };
+    }
+
+    /// The crystal stops, for good.
+    pub fn stop_crystal(&mut self) {
+        self.crystal_dead = true;
+    }
+
+    /// The crystal was stopped.
+    pub fn crystal_is_dead(&self) -> bool {
+        self.crystal_dead
     }
 
     /// Reset of a PLL through RESETS.
@@ -248,7 +265,7 @@ impl Clocks {
 
     /// Reads a PLL (0 system, 1 USB).
     pub fn read_pll(&self, which: usize, offset: u32) -> Option<u32> {
-        self.pll[which].read(offset)
+        self.pll[which].read(offset, self.xosc_hz())
     }
 
     /// Writes a PLL.

@@ -10,6 +10,8 @@
 
 use std::collections::VecDeque;
 
+use super::flash_journal::{Journal, Kind};
+
 /// Sector erase and page program (W25Q16JV: typical 45 ms and 0.4 ms).
 pub const ERASE_SECTOR_US: u64 = 45_000;
 pub const PROGRAM_PAGE_US: u64 = 400;
@@ -30,6 +32,8 @@ pub struct Flash {
     registers: [u32; 0x100 / 4],
     replies: VecDeque<u8>,
     command: Vec<u8>,
+    /// Erase and program operations so far.
+    pub journal: Journal,
 }
 
 impl Flash {
@@ -41,6 +45,7 @@ impl Flash {
             registers: [0; 0x100 / 4],
             replies: VecDeque::new(),
             command: Vec::new(),
+            journal: Journal::default(),
         }
     }
 
@@ -59,7 +64,9 @@ impl Flash {
         {
             return false;
         }
-        self.bytes[offset..offset + len].fill(0xff);
+        let cells = &mut self.bytes[offset..offset + len];
+        self.journal.begin(Kind::Erase, offset, cells);
+        cells.fill(0xff);
         true
     }
 
@@ -71,7 +78,9 @@ impl Flash {
         {
             return false;
         }
-        for (cell, byte) in self.bytes[offset..].iter_mut().zip(data) {
+        let cells = &mut self.bytes[offset..offset + data.len()];
+        self.journal.begin(Kind::Program, offset, cells);
+        for (cell, byte) in cells.iter_mut().zip(data) {
             *cell &= byte;
         }
         true

@@ -19,6 +19,7 @@ pub mod i2c;
 pub mod outside;
 pub mod pins;
 pub mod pio;
+mod power;
 mod profile;
 mod pwm;
 mod rom;
@@ -187,11 +188,12 @@ impl Chip {
         self.cores[0].cpu.start(BOOT2_AT, BOOT2_AT);
     }
 
-    /// Runs until cycle `until` or the first fault.
+    /// Runs until cycle `until`, the first fault, or the flash operation that the journal is to pause at.
     pub fn run_until(&mut self, until: u64) -> Result<(), Halt> {
         // Between runs anything may have been done to the peripherals.
         self.bus.settle();
-        while self.bus.now < until && self.bus.fault.is_none() {
+        self.bus.paused = false;
+        while self.bus.now < until && self.bus.fault.is_none() && !self.bus.paused {
             self.slice(until);
         }
         match self.bus.fault.clone() {
@@ -301,6 +303,7 @@ impl Chip {
         self.bus.reset_request.is_some()
             || self.bus.core1_forced_off
             || self.bus.core1_launching
+            || self.bus.paused
             || self.bus.fault.is_some()
     }
 

@@ -170,7 +170,9 @@ impl Chip {
 
     /// The flash is busy for `cycles`, which is what the call takes.
     fn flash_works(&mut self, k: usize, cycles: u64) -> u64 {
-        self.bus.xip.busy_until = self.cores[k].cpu.time + cycles;
+        let start = self.cores[k].cpu.time;
+        self.bus.xip.busy_until = start + cycles;
+        self.bus.paused |= self.bus.flash.journal.takes(start, start + cycles);
         cycles
     }
 }

@@ -23,6 +23,7 @@ const FULL: u32 = 1 << 15;
 const SETUP_REC: u32 = 1 << 17;
 const TRANS_COMPLETE: u32 = 1 << 18;
 const BUS_RESET: u32 = 1 << 19;
+const SUSPENDED: u32 = 1 << 4;
 const CONNECTED: u32 = 1 << 16;
 const VBUS: u32 = 1;
 /// Bits of SIE_STATUS that software clears by writing one.
@@ -124,6 +125,11 @@ impl Usb {
         self.sie_status &= !CONNECTED;
     }
 
+    /// The bus has been idle for 3 ms.
+    pub fn suspend(&mut self) {
+        self.sie_status |= SUSPENDED;
+    }
+
     /// Start of frame.
     pub fn start_of_frame(&mut self, number: u32) {
         self.frame = number & 0x7ff;
@@ -186,7 +192,7 @@ impl Usb {
         u32::from(self.sie_status & TRANS_COMPLETE != 0) << 3
             | u32::from(self.buff_status != 0) << 4
             | u32::from(self.sie_status & BUS_RESET != 0) << 12
-            | u32::from(self.sie_status & (1 << 4) != 0) << 14
+            | u32::from(self.sie_status & SUSPENDED != 0) << 14
             | u32::from(self.sie_status & (1 << 11) != 0) << 15
             | u32::from(self.sie_status & SETUP_REC != 0) << 16
     }

@@ -21,6 +21,9 @@ const DEBOUNCE_FRAMES: u64 = 10;
 /// Frames after which an unanswered control transfer is given up (USB 2.0, 9.2.6.4: 5 s).
 const CONTROL_TIMEOUT_FRAMES: u64 = 5_000;
 
+/// Frames without traffic after which a device is suspended (USB 2.0, 7.1.7.6: 3 ms).
+const SUSPEND_FRAMES: u64 = 3;
+
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Stage {
     Setup,
@@ -56,6 +59,8 @@ pub struct UsbHost {
     state: State,
     plugged: bool,
     frame: u64,
+    /// Frame of the last one with a host.
+    idle_since: u64,
     slot: u64,
     next: u64,
     queue: VecDeque<Control>,
@@ -71,6 +76,8 @@ pub struct UsbHost {
     pub open: bool,
     /// The host takes IN data.
     pub reading: bool,
+    /// The host opens the console once the device is configured.
+    pub opens: bool,
     pub to_device: VecDeque<u8>,
     pub from_device: VecDeque<u8>,
     /// Bytes the host has taken since it was made.
@@ -85,6 +92,7 @@ impl Default for UsbHost {
             state: State::Detached,
             plugged: true,
             frame: 0,
+            idle_since: 0,
             slot: 0,
             next: 0,
             queue: VecDeque::new(),
@@ -97,6 +105,7 @@ impl Default for UsbHost {
             descriptors: Vec::new(),
             open: false,
             reading: true,
+            opens: true,
             to_device: VecDeque::new(),
             from_device: VecDeque::new(),
             received: 0,
@@ -140,7 +149,12 @@ impl UsbHost {
         if !self.plugged || !usb.attached() {
             if self.state != State::Detached {
                 self.detach();
+                self.idle_since = self.frame;
                 usb.disconnect();
+            }
+            // Without a host nobody sends frames, and a bus that is idle so long is a suspended one.
+            if self.idle_since + SUSPEND_FRAMES == self.frame && self.slot == 0 {
+                usb.suspend();
             }
             return false;
         }
@@ -277,7 +291,9 @@ impl UsbHost {
                             [0x21, 0x20, 0, 0, 0, 0, 7, 0],
                             &[0x00, 0xc2, 0x01, 0x00, 0, 0, 8],
                         );
-                        self.request([0x21, 0x22, 3, 0, 0, 0, 0, 0], &[]);
+                        if self.opens {
+                            self.request([0x21, 0x22, 3, 0, 0, 0, 0, 0], &[]);
+                        }
                     }
                     None => self.faults.push("no CDC data interface".into()),
                 },

@@ -51,6 +51,7 @@ use super::timer::{Timer, Watchdog};
 use super::uart::Uart;
 use super::usb::{DPRAM, Usb};
 use super::usb_host::UsbHost;
+use crate::board::WireNoise;
 
 /// SRAM: four striped 64 KiB banks and two of 4 KiB (datasheet 2.6.2).
 pub const SRAM: usize = 264 * 1024;
@@ -101,6 +102,8 @@ pub struct Bus {
     pub fault: Option<Fault>,
     pub reset_request: Option<ResetCause>,
     pub core1_forced_off: bool,
+    /// The run ends here for now: a flash operation that was waited for has begun.
+    pub paused: bool,
     /// Core 0 pushed a word to a core 1 that still waits in ROM.
     pub core1_launching: bool,
     lines: [u32; 2],
@@ -149,6 +152,10 @@ pub struct Bus {
     pub surroundings: Surroundings,
     /// The board's trigger levels; the first is the comparator's.
     pub trigger_nets: Vec<TriggerNet>,
+    /// ADC channel of the RSSI net.
+    pub rssi_adc: Option<usize>,
+    /// Noise on the wires of the UARTs.
+    pub line_noise: [WireNoise; 2],
 }
 
 impl Bus {
@@ -176,6 +183,7 @@ impl Bus {
             fault: None,
             reset_request: None,
             core1_forced_off: false,
+            paused: false,
             core1_launching: false,
             lines: [0; 2],
             lines_dirty: true,
@@ -213,6 +221,8 @@ impl Bus {
             crystal: Crystal::default(),
             surroundings: Surroundings::new(),
             trigger_nets: Vec::new(),
+            rssi_adc: None,
+            line_noise: [0, 1].map(WireNoise::new),
         };
         bus.clocks_changed();
         bus

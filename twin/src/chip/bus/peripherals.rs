@@ -133,6 +133,7 @@ impl Bus {
     /// Conversions that are due.
     pub(super) fn advance_adc(&mut self) {
         let now = self.instant();
+        self.hold_rssi(self.adc.selected());
         self.adc.advance(now);
         self.check_adc();
     }

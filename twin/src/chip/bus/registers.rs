@@ -228,6 +228,9 @@ impl Bus {
             }
             0x4004_c000 => {
                 let now = self.instant();
+                if offset == 0 {
+                    self.hold_rssi((value >> 12 & 7) as usize);
+                }
                 let ok = self.adc.write(offset, value, now);
                 self.check_adc();
                 return ok;

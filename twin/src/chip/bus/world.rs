@@ -1,6 +1,8 @@
 //! Time outside the chip: true time against cycles, what is attached and acts by itself, the analog nets.
 
 use super::Bus;
+use crate::board::line_noise::Heard;
+use crate::chip::adc::{AnalogInput, Steady};
 use crate::chip::outside::{Outside, Wires};
 use crate::front_end::PulseSource;
 use crate::front_end::parameters::LEAST_MILLIVOLT;
@@ -11,19 +13,21 @@ const PS_A_SECOND: u128 = 1_000_000_000_000;
 /// Noise of the RSSI net at its ADC input, mV rms (assumed: two steps of the ADC).
 const RSSI_NOISE_MV: f64 = 1.6;
 
-/// A trigger level: the pin whose PWM makes it and the voltage behind its RC.
+/// A trigger level: the pin whose PWM makes it, the ADC channel that reads it back, the voltage behind its RC.
 #[derive(Clone, Copy, Debug)]
 pub struct TriggerNet {
     pub gpio: usize,
+    pub adc: usize,
     pub level: TriggerLevel,
 }
 
-impl TriggerNet {
-    pub fn new(gpio: usize) -> Self {
-        Self {
-            gpio,
-            level: TriggerLevel::default(),
-        }
+impl AnalogInput for TriggerLevel {
+    fn volts(&mut self, time_ps: u128) -> f64 {
+        self.mv(time_ps) / 1000.0
+    }
+
+    fn clone_box(&self) -> Box<dyn AnalogInput> {
+        Box::new(*self)
     }
 }
 
@@ -89,13 +93,37 @@ impl Bus {
                     self.pins.change_at(pin, level, *at);
                 }
                 for (uart, bytes) in wires.bytes {
-                    self.uart[uart].send(&bytes, now);
+                    self.uart_send(uart, &bytes);
                 }
                 *at = device.next_ps().map_or(u64::MAX, |ps| self.cycle_at(ps));
             }
         }
         self.surroundings.next = devices.iter().map(|d| d.1).min().unwrap_or(u64::MAX);
         self.surroundings.devices = devices;
+    }
+
+    /// The far end of a UART sends bytes, over its wire.
+    pub fn uart_send(&mut self, uart: usize, bytes: &[u8]) {
+        let noise = &mut self.line_noise[uart].to_device;
+        let arriving = bytes.iter().filter_map(|byte| match noise.pass(*byte) {
+            // The UART's model knows no framing errors yet: the byte arrives as wrong as it is.
+            Heard::Byte(byte) | Heard::Broken(byte) => Some(byte),
+            Heard::Nothing => None,
+        });
+        let arriving: Vec<u8> = arriving.collect();
+        self.uart[uart].send(&arriving, self.now);
+        self.quiet_until = 0;
+    }
+
+    /// The crystal stops: for good.
+    pub fn stop_crystal(&mut self) {
+        self.clocks.stop_crystal();
+        self.clocks_changed();
+    }
+
+    /// The crystal was stopped.
+    pub fn crystal_is_dead(&self) -> bool {
+        self.clocks.crystal_is_dead()
     }
 
     /// Time passes without a cycle: the supply is off.
@@ -118,11 +146,12 @@ impl Bus {
 
     /// Follows the PWM of every trigger level, and tells the comparator of the first.
     pub fn apply_trigger_level(&mut self) {
-        let now_ps = self.time_ps();
+        let now_ps = self.true_ps();
         for net in &mut self.trigger_nets {
             let driven = self.pins.function(net.gpio) == 4;
             let duty = self.pwm.duty(net.gpio).filter(|_| driven);
             net.level.aim(duty.unwrap_or(0.0) * SUPPLY_MV, now_ps);
+            self.adc.set_input(net.adc, Box::new(net.level));
         }
         if let Some(net) = self.trigger_nets.first() {
             self.pins.set_trigger_level(net.level);
@@ -130,15 +159,32 @@ impl Bus {
     }
 
     /// Every trigger level stands where its PWM wants it.
-    pub fn trigger_levels_settled(&self) -> bool {
-        let now_ps = self.time_ps();
+    pub fn trigger_levels_settled(&mut self) -> bool {
+        let now_ps = self.true_ps();
         self.trigger_nets.iter().all(|n| n.level.settled(now_ps))
     }
 
     /// The voltage of a trigger level now, mV.
-    pub fn trigger_level_mv(&self, which: usize) -> Option<f64> {
-        let now_ps = self.time_ps();
+    pub fn trigger_level_mv(&mut self, which: usize) -> Option<f64> {
+        let now_ps = self.true_ps();
         self.trigger_nets.get(which).map(|n| n.level.mv(now_ps))
+    }
+
+    /// The supply was away: the RCs are empty.
+    pub fn discharge_trigger_levels(&mut self) {
+        let now_ps = self.true_ps();
+        for net in &mut self.trigger_nets {
+            net.level = TriggerLevel::discharged(now_ps);
+        }
+        self.apply_trigger_level();
+    }
+
+    /// Puts the RSSI net's present voltage on its ADC channel, if a conversion is about to hold that one.
+    pub(super) fn hold_rssi(&mut self, channel: usize) {
+        if self.rssi_adc == Some(channel) {
+            let volts = self.rssi_mv() / 1000.0;
+            self.adc.set_input(channel, Box::new(Steady(volts)));
+        }
     }
 
     /// The voltage of the RSSI net at this instant, mV: the detector's level and a little noise of its own.

@@ -128,7 +128,7 @@ impl Playback {
         while self.lacks(until) {
             self.edges.drain(..self.played);
             self.played = 0;
-            let mv = level.mv(self.start_ps + u128::from(self.asked_ps));
+            let mv = level.mv(self.start_true_ps + u128::from(self.asked_ps));
             if mv != self.told_mv {
                 self.told_mv = mv;
                 self.source.set_trigger_level_mv(mv);
