@@ -141,7 +141,10 @@ impl Board {
                     Wire::Comms => self.kind.comms_uart,
                     Wire::Gnss => 0,
                 };
-                self.chip.bus.line_noise[uart].set_rate(rate);
+                self.noise_from_device[uart].rate = rate;
+                let seed = self.next_seed();
+                let far = &mut self.chip.bus.uart[uart].far;
+                far.set_noise((rate * 1e6) as u32, seed);
             }
             Fault::UsbPlug(plugged) => self.chip.bus.usb_host.plug(plugged),
             Fault::UsbRead(reading) => self.chip.bus.usb_host.reading = reading,

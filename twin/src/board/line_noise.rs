@@ -1,4 +1,4 @@
-//! Noise on a serial wire: bits that arrive wrong.
+//! Noise on a serial wire from the device to its far end: bits that arrive wrong. The other way is part of the UART's far end.
 //!
 //! ```text
 //!   start ┬ d0 … d7 ┬ stop        a wrong data bit changes the byte; a wrong start bit hides the character;

@@ -21,13 +21,15 @@ use std::path::Path;
 use eeprom::Eeprom;
 use gnss::Gnss;
 use kind::{ADSBEE_1090, Kind};
+use line_noise::LineNoise;
 use pin_serial::PinSerial;
-pub use ports::{PortName, QUEUE, WireNoise};
+pub use ports::{PortName, QUEUE};
 use potentiometer::Potentiometer;
 
 use crate::chip::bus::TriggerNet;
 use crate::chip::crystal::{Crystal, Deviation};
 use crate::chip::flash::Flash;
+use crate::chip::uart::FarFormat;
 use crate::chip::{Chip, Halt};
 use crate::fault::{Memory, Planned};
 use crate::front_end::PulseSource;
@@ -116,6 +118,8 @@ pub struct Board {
     pub power_cuts: u64,
     pub flips: u64,
     random: Random,
+    /// Noise on the wires of the UARTs from the device to their far ends; the other way is the far ends' own.
+    noise_from_device: [LineNoise; 2],
 }
 
 /// Where a playback stands in the device's time.
@@ -156,7 +160,6 @@ impl Board {
             .collect();
         bus.apply_trigger_level();
         bus.rssi_adc = Some(kind.rssi_adc);
-        bus.line_noise = [WireNoise::new(setup.seed), WireNoise::new(setup.seed ^ 2)];
         // UART lines idle high.
         bus.pins.drive(kind.comms_rx, true);
         bus.pins.drive(kind.flarm_rx, true);
@@ -171,6 +174,7 @@ impl Board {
             power_cuts: 0,
             flips: 0,
             random: Random::new(setup.seed),
+            noise_from_device: [1, 2].map(|n| LineNoise::new(setup.seed ^ n)),
         };
         board.wire_i2c(setup);
         board.wire_gnss(setup);
@@ -202,6 +206,8 @@ impl Board {
                 pps: nets.pps,
                 enable: nets.enable,
             };
+            let format = FarFormat::eight_n_one(options.baud);
+            self.chip.bus.uart[nets.uart].far.format = Some(format);
             let receiver = Gnss::new(options.clone(), wired);
             self.chip.bus.attach(Box::new(receiver));
         }

@@ -11,7 +11,7 @@
 //! from outside can wait and no queue grows without end.
 
 use super::Board;
-use super::line_noise::{Heard, LineNoise};
+use super::line_noise::Heard;
 use super::pin_serial::PinSerial;
 
 /// Bytes that wait for a port at most when its feeder asks for room first.
@@ -34,8 +34,8 @@ impl Board {
     pub fn room(&mut self, port: PortName) -> usize {
         let waiting = match port {
             PortName::Console => self.chip.bus.usb_host.to_device.len(),
-            PortName::Comms => self.chip.bus.uart[self.kind.comms_uart].to_send.len(),
-            PortName::Gnss | PortName::Esp32 => self.chip.bus.uart[0].to_send.len(),
+            PortName::Comms => self.chip.bus.uart[self.kind.comms_uart].far.pending(),
+            PortName::Gnss | PortName::Esp32 => self.chip.bus.uart[0].far.pending(),
             PortName::Flarm => self
                 .chip
                 .bus
@@ -113,37 +113,13 @@ impl Board {
     }
 
     fn uart_read(&mut self, uart: usize) -> Vec<u8> {
-        let bus = &mut self.chip.bus;
-        let noise = &mut bus.line_noise[uart].from_device;
-        let sent = bus.uart[uart].sent.drain(..);
+        let noise = &mut self.noise_from_device[uart];
+        let sent = self.chip.bus.uart[uart].sent.drain(..);
         // A far end drops what has no stop bit.
         sent.filter_map(|(_, byte)| match noise.pass(byte) {
             Heard::Byte(byte) => Some(byte),
             Heard::Broken(_) | Heard::Nothing => None,
         })
         .collect()
-    }
-}
-
-/// The noise of a UART's wire, both ways.
-#[derive(Clone)]
-pub struct WireNoise {
-    pub to_device: LineNoise,
-    pub from_device: LineNoise,
-}
-
-impl WireNoise {
-    /// A clean wire.
-    pub fn new(seed: u64) -> Self {
-        Self {
-            to_device: LineNoise::new(seed),
-            from_device: LineNoise::new(!seed),
-        }
-    }
-
-    /// Each bit is wrong with this probability from now on.
-    pub fn set_rate(&mut self, rate: f64) {
-        self.to_device.rate = rate;
-        self.from_device.rate = rate;
     }
 }

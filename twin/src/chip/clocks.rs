@@ -186,8 +186,8 @@ impl Clocks {
         match ctrl >> 5 & 7 {
             _ if ctrl & (1 << 11) == 0 => 0,
             0 => self.sys_hz(),
-            1 => self.pll[0].hz(),
-            2 => self.pll[1].hz(),
+            1 => self.pll[0].hz(self.xosc_hz()),
+            2 => self.pll[1].hz(self.xosc_hz()),
             3 => ROSC_HZ,
             4 => self.xosc_hz(),
             _ => 0,

@@ -51,7 +51,6 @@ use super::timer::{Timer, Watchdog};
 use super::uart::Uart;
 use super::usb::{DPRAM, Usb};
 use super::usb_host::UsbHost;
-use crate::board::WireNoise;
 
 /// SRAM: four striped 64 KiB banks and two of 4 KiB (datasheet 2.6.2).
 pub const SRAM: usize = 264 * 1024;
@@ -154,8 +153,6 @@ pub struct Bus {
     pub trigger_nets: Vec<TriggerNet>,
     /// ADC channel of the RSSI net.
     pub rssi_adc: Option<usize>,
-    /// Noise on the wires of the UARTs.
-    pub line_noise: [WireNoise; 2],
 }
 
 impl Bus {
@@ -222,7 +219,6 @@ impl Bus {
             surroundings: Surroundings::new(),
             trigger_nets: Vec::new(),
             rssi_adc: None,
-            line_noise: [0, 1].map(WireNoise::new),
         };
         bus.clocks_changed();
         bus

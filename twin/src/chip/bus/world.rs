@@ -1,7 +1,6 @@
 //! Time outside the chip: true time against cycles, what is attached and acts by itself, the analog nets.
 
 use super::Bus;
-use crate::board::line_noise::Heard;
 use crate::chip::adc::{AnalogInput, Steady};
 use crate::chip::outside::{Outside, Wires};
 use crate::front_end::PulseSource;
@@ -102,17 +101,10 @@ impl Bus {
         self.surroundings.devices = devices;
     }
 
-    /// The far end of a UART sends bytes, over its wire.
+    /// The far end of a UART sends bytes.
     pub fn uart_send(&mut self, uart: usize, bytes: &[u8]) {
-        let noise = &mut self.line_noise[uart].to_device;
-        let arriving = bytes.iter().filter_map(|byte| match noise.pass(*byte) {
-            // The UART's model knows no framing errors yet: the byte arrives as wrong as it is.
-            Heard::Byte(byte) | Heard::Broken(byte) => Some(byte),
-            Heard::Nothing => None,
-        });
-        let arriving: Vec<u8> = arriving.collect();
-        self.uart[uart].send(&arriving, self.now);
-        self.quiet_until = 0;
+        self.uart[uart].send(bytes, self.now);
+        self.touched();
     }
 
     /// The crystal stops: for good.
