@@ -32,8 +32,8 @@ pub mod uart;
 mod usb;
 pub mod usb_host;
 
-use bus::{Bus, Cause, Fault, ResetCause};
-use cpu::{Cpu, Sleep};
+use bus::{Bus, Cause, Fault, Reader, ResetCause, Shadow, Uninitialised};
+use cpu::{Cpu, Sleep, StackWatch};
 use flash::Flash;
 pub use profile::{Profile, Spent};
 
@@ -158,6 +158,38 @@ impl Chip {
     /// What was counted for each core since [`Chip::start_profile`].
     pub fn profile(&self) -> Option<&[Profile; 2]> {
         self.profile.as_deref()
+    }
+
+    /// From here on, remembers which bytes of SRAM are written and who reads others. What was written before counts as written if it is
+    /// not zero. Costs speed.
+    pub fn watch_uninitialised(&mut self) {
+        let mut shadow = Box::new(Shadow::new());
+        for (at, byte) in self.bus.sram.iter().enumerate() {
+            if *byte != 0 {
+                shadow.write(at, 1);
+            }
+        }
+        self.bus.shadow = Some(shadow);
+    }
+
+    /// Who has read SRAM that nobody wrote, since [`Chip::watch_uninitialised`].
+    pub fn uninitialised(&self) -> impl Iterator<Item = (Reader, Uninitialised)> + '_ {
+        self.bus.shadow.iter().flat_map(|shadow| shadow.readers())
+    }
+
+    /// A core's stack must not grow below `lowest` from here on.
+    pub fn set_stack_limit(&mut self, core: usize, lowest: u32) {
+        self.cores[core].cpu.stack.limit = Some(lowest);
+    }
+
+    /// How deep a core's stack has been.
+    pub fn stack(&self, core: usize) -> &StackWatch {
+        &self.cores[core].cpu.stack
+    }
+
+    /// Cycles each core has waited for bus ports and for flash.
+    pub fn wait_cycles(&self) -> [u64; 2] {
+        [self.cores[0].cpu.waits, self.cores[1].cpu.waits]
     }
 
     /// Where a core is.
@@ -431,6 +463,8 @@ fn boot2_crc(bytes: &[u8]) -> u32 {
     })
 }
 
+#[cfg(test)]
+mod cost_tests;
 #[cfg(test)]
 mod test_chip;
 #[cfg(test)]

@@ -232,7 +232,7 @@ impl Bus {
         self.psm_off = 0;
         self.psm_wdsel = 0;
         self.flash.reset();
-        self.xip.reset(self.now);
+        self.xip.reset();
         self.fabric.priority = 0;
         self.clocks.reset();
         self.sio = Sio::default();

@@ -105,12 +105,11 @@ impl Default for Xip {
 }
 
 impl Xip {
-    /// Reset at cycle `now`: the cache is flushed, what was counted for the host stays.
-    pub fn reset(&mut self, now: u64) {
+    /// Reset: the cache is empty (its flush is over before the mask ROM reads flash), what was counted for the host stays.
+    pub fn reset(&mut self) {
         *self = Self {
             hits: self.hits,
             misses: self.misses,
-            flushed_at: now + FLUSH,
             ..Self::default()
         };
     }
