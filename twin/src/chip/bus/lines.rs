@@ -1,8 +1,8 @@
 //! Pads, and the wires that several parties share: whoever moves a line, all others see it before time goes on.
 
 use super::Bus;
-use crate::chip::pins::Drivers;
-use crate::chip::pins::functions::{self as f, I2C_PINS, UART_PINS};
+use crate::chip::pins::functions::{self as f, I2C_PINS, PWM_PINS, UART_PINS};
+use crate::chip::pins::{Drivers, SYNC_CYCLES};
 use crate::chip::pio::Pio;
 
 /// Rounds after which the parties on a line have settled: each can answer the other once (a device that acknowledges, a controller that
@@ -34,6 +34,7 @@ impl Bus {
         self.pins.now = at;
         self.drive_pins();
         self.sense_cts();
+        self.sense_pwm();
         for _ in 0..ROUNDS {
             if !self.settle_i2c(0) & !self.settle_i2c(1) {
                 return;
@@ -57,8 +58,14 @@ impl Bus {
         } else {
             self.uart_levels()
         };
+        let pwm = if self.pins.selected(f::PWM, u32::MAX) == 0 {
+            (0, 0)
+        } else {
+            self.pwm_levels()
+        };
         self.pins.resolve(&Drivers {
             uart,
+            pwm,
             sio: (self.sio.out, self.sio.oe),
             pio: [0, 1].map(|n| (self.pio[n].pad_out, self.pio[n].pad_oe)),
             i2c_low: low,
@@ -71,7 +78,7 @@ impl Bus {
         let (mut levels, mut enables) = (0, 0);
         for (uart, pins) in self.uart.iter().zip(UART_PINS) {
             for (signal, level) in [
-                (f::uart::TX, uart.txd(self.now)),
+                (f::uart::TX, uart.txd(self.pins.now)),
                 (f::uart::RTS, uart.rts_n()),
             ] {
                 enables |= pins[signal];
@@ -81,6 +88,39 @@ impl Bus {
             }
         }
         (levels, enables)
+    }
+
+    /// What the PWM slices put on their pins.
+    fn pwm_levels(&mut self) -> (u32, u32) {
+        self.pwm.catch_up(self.pins.now.max(self.pwm.now()));
+        let (mut levels, mut enables) = (0, 0);
+        for (n, [a, b]) in PWM_PINS.into_iter().enumerate() {
+            let ([high_a, high_b], drives_b) = self.pwm.outputs(n);
+            enables |= a | if drives_b { b } else { 0 };
+            levels |= if high_a { a } else { 0 } | if high_b { b } else { 0 };
+        }
+        (levels, enables)
+    }
+
+    /// Shows the PWM slices that listen to it their B pin.
+    fn sense_pwm(&mut self) {
+        let mut listening = self.pwm.listening();
+        while listening != 0 {
+            let n = listening.trailing_zeros() as usize;
+            listening &= listening - 1;
+            let level = self.pins.peripheral_input(f::PWM, PWM_PINS[n][1]);
+            self.pwm.set_b(n, level, self.now);
+        }
+    }
+
+    /// Brings pads that nobody watches to where a reader at this cycle sees them, behind the synchroniser.
+    pub(super) fn look_at_pins(&mut self) {
+        let by_itself =
+            self.pins.selected(f::UART, u32::MAX) | self.pins.selected(f::PWM, u32::MAX);
+        if by_itself != 0 {
+            let at = self.now.saturating_sub(SYNC_CYCLES).max(self.pins.now);
+            self.resolve_pins_at(at);
+        }
     }
 
     /// Shows the UARTs their CTS, where a pin carries it. Without one, it is asserted.
@@ -101,6 +141,12 @@ impl Bus {
         for (uart, pins) in self.uart.iter_mut().zip(UART_PINS) {
             uart.watched = self.pins.selected(f::UART, pins[f::uart::TX]) & watched != 0;
         }
+        let pwm = self.pins.selected(f::PWM, watched);
+        self.pwm.watched = PWM_PINS
+            .iter()
+            .enumerate()
+            .filter(|(_, [a, b])| pwm & (a | b) != 0)
+            .fold(0, |mask, (n, _)| mask | 1 << n);
     }
 
     /// Shows I2C `n` its lines. True if it answered by moving one.

@@ -61,6 +61,7 @@ pub const ROM: usize = 16 * 1024;
 /// IRQ numbers (datasheet 2.3.2).
 mod irq {
     pub const TIMER_0: u32 = 0;
+    pub const PWM_WRAP: u32 = 4;
     pub const USBCTRL: u32 = 5;
     pub const PIO0_0: u32 = 7;
     pub const DMA_0: u32 = 11;
@@ -380,6 +381,7 @@ impl Bus {
     fn compute_lines(&self) -> [u32; 2] {
         let mut lines = self.timer.irq_lines() << irq::TIMER_0;
         lines |= u32::from(self.usb.irq_line()) << irq::USBCTRL;
+        lines |= u32::from(self.pwm.irq_line()) << irq::PWM_WRAP;
         lines |= u32::from(self.adc.irq_line()) << irq::ADC_FIFO;
         for block in 0..2 {
             for line in 0..2 {

@@ -3,7 +3,6 @@
 use super::{Bus, DPRAM, ResetCause, reset};
 use crate::chip::dma::Dma;
 use crate::chip::pio::Pio;
-use crate::chip::pwm::Pwm;
 use crate::chip::sio::Effect;
 use crate::chip::syscfg::Syscfg;
 use crate::chip::usb::Usb;
@@ -32,7 +31,7 @@ impl Bus {
             self.clocks.reset_pll(1);
         }
         if on(reset::PWM) {
-            self.pwm = Pwm::default();
+            self.pwm.reset(now);
         }
         if on(reset::SYSCFG) {
             self.syscfg = Syscfg::default();
@@ -68,6 +67,9 @@ impl Bus {
         match address >> 28 {
             0x1 => self.read_flash_interface(address),
             0xd => {
+                if offset == 0x04 {
+                    self.look_at_pins();
+                }
                 let pins = self.pins.synced(now, self.syscfg.in_sync_bypass);
                 self.sio.read(self.active, offset, pins)
             }
@@ -94,7 +96,10 @@ impl Bus {
                     0xc => Some(0x1_ffff & !self.psm_off),
                     _ => None,
                 },
-                0x4001_4000 => self.pins.read_io(offset),
+                0x4001_4000 => {
+                    self.look_at_pins();
+                    self.pins.read_io(offset)
+                }
                 0x4001_c000 => self.pins.read_pads(offset),
                 0x4002_4000 => self.clocks.read_xosc(offset),
                 0x4002_8000 => self.clocks.read_pll(0, offset),
@@ -238,6 +243,7 @@ impl Bus {
             0x4005_0000 => {
                 let ok = self.pwm.write(offset, value, now);
                 self.apply_trigger_level();
+                self.resolve_pins();
                 return ok;
             }
             0x4005_4000 => return self.timer.write(offset, value, now),

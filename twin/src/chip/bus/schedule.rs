@@ -14,10 +14,11 @@ enum Actor {
     I2c(usize),
     Adc,
     SysTick(usize),
+    Pwm,
     Watchdog,
 }
 
-const ACTORS: [Actor; 9] = [
+const ACTORS: [Actor; 10] = [
     Actor::Timer,
     Actor::Uart(0),
     Actor::Uart(1),
@@ -26,6 +27,7 @@ const ACTORS: [Actor; 9] = [
     Actor::Adc,
     Actor::SysTick(0),
     Actor::SysTick(1),
+    Actor::Pwm,
     Actor::Watchdog,
 ];
 
@@ -52,6 +54,7 @@ impl Bus {
             Actor::I2c(n) => self.i2c[n].next_event(),
             Actor::Adc => self.adc.next_event(),
             Actor::SysTick(core) => self.systick[core].next_event(),
+            Actor::Pwm => self.pwm.next_event(self.paced_by_pwm()),
             Actor::Watchdog => self.watchdog.next_event(),
         }
     }
@@ -77,6 +80,12 @@ impl Bus {
                     self.ppb[core].icsr |= SYSTICK_PENDING;
                 }
             }
+            Actor::Pwm => {
+                self.pwm.catch_up(now);
+                if self.pwm.watched != 0 {
+                    self.resolve_pins();
+                }
+            }
             Actor::Watchdog => {
                 if self.watchdog.bites(now) && self.reset_request.is_none() {
                     self.reset_request = Some(ResetCause::WatchdogTimer);
@@ -85,6 +94,15 @@ impl Bus {
                 }
             }
         }
+    }
+
+    /// PWM slices whose wrap paces a DMA channel (DREQ 24 to 31).
+    fn paced_by_pwm(&self) -> u32 {
+        self.dma
+            .channels
+            .iter()
+            .filter(|c| c.enabled() && (24..32).contains(&c.dreq()))
+            .fold(0, |mask, c| mask | 1 << (c.dreq() - 24))
     }
 
     /// Cycle of the next event of any peripheral but PIO.
@@ -113,6 +131,7 @@ impl Bus {
         }
         if self.pins.next_change() <= now {
             self.pins.synced(now, 0);
+            self.resolve_pins();
         }
         if self.deadlines.known && self.deadlines.earliest <= now {
             for (n, actor) in ACTORS.into_iter().enumerate() {

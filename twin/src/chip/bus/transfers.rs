@@ -27,6 +27,7 @@ impl Bus {
             21 => Request::Ready(self.uart[0].rx_ready()),
             22 => Request::Ready(self.uart[1].tx_ready()),
             23 => Request::Ready(self.uart[1].rx_ready()),
+            24..=31 => Request::Pulses(self.pwm.wraps(n - 24)),
             32 | 34 => Request::Ready(self.i2c[(n - 32) / 2].tx_ready()),
             33 | 35 => Request::Ready(self.i2c[(n - 32) / 2].rx_ready()),
             36 => Request::Ready(self.adc.ready()),

@@ -56,7 +56,7 @@ impl Channel {
         self.ctrl >> n & 1 != 0
     }
 
-    pub(super) fn enabled(&self) -> bool {
+    pub fn enabled(&self) -> bool {
         self.bit(0)
     }
 
