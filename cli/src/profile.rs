@@ -70,6 +70,7 @@ impl Functions {
                 cycles,
                 waits,
                 misses,
+                ..
             } = spent;
             text.push_str(&format!(
                 "{cycles:>12} {:>5.1} % {:>5.1} % {misses:>7} {name}\n",

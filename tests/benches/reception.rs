@@ -143,7 +143,7 @@ fn scenes(bench: &mut Bench, device: &mut Option<Device>, frames: usize) -> Resu
         "{:<24}{:>8}{:>8}{:>8}{:>8}{:>12}{:>8}",
         "", "rc", "peak", "fixed", "twin rc", "mutability", "readsb*"
     ));
-    let only = option("--points");
+    let only = tests::option("--points");
     let mut noise: Vec<(f64, Vec<f64>)> = Vec::new();
     let mut invented = [0; 5];
     for point in points::all(frames) {
@@ -251,11 +251,4 @@ fn row(
             ));
         }
     }
-}
-
-/// The value behind an option.
-fn option(name: &str) -> Option<String> {
-    let mut arguments = std::env::args();
-    arguments.find(|argument| argument == name)?;
-    arguments.next()
 }

@@ -3,6 +3,7 @@
 pub mod beast;
 pub mod cpu_peer;
 pub mod power_cuts;
+pub mod profile;
 pub mod reception;
 
 use std::path::PathBuf;
@@ -33,6 +34,34 @@ pub fn recording(name: &str) -> PathBuf {
         path.display()
     );
     path
+}
+
+/// The value behind an option of the command line.
+pub fn option(name: &str) -> Option<String> {
+    let mut arguments = std::env::args();
+    arguments.find(|argument| argument == name)?;
+    arguments.next()
+}
+
+/// The number behind an option of the command line; what is no number ends the program.
+pub fn number_option<T: std::str::FromStr>(name: &str, otherwise: T) -> T {
+    match option(name) {
+        None => otherwise,
+        Some(text) => match text.parse() {
+            Ok(number) => number,
+            Err(_) => panic!("{name} needs a number, not \"{text}\""),
+        },
+    }
+}
+
+/// Whether a flag is on the command line.
+pub fn flag(name: &str) -> bool {
+    std::env::args().any(|argument| argument == name)
+}
+
+/// Whether this is a run of `cargo bench`: `cargo test` only wants to see a benchmark build.
+pub fn is_bench() -> bool {
+    flag("--bench")
 }
 
 /// Table, CSV and result line of a benchmark.

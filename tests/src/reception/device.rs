@@ -2,7 +2,7 @@
 
 use super::Decoded;
 use crate::beast::Reader;
-use twin::board::Board;
+use twin::board::{Board, Playback};
 use twin::front_end::PulseSource;
 
 /// After the air is silent the last frame needs this long to come out, ms.
@@ -19,6 +19,9 @@ const TICKS_A_COUNT: i64 = 10;
 /// A device that reports Beast on its console.
 pub struct Device {
     pub board: Board,
+    /// What the console said since playback began.
+    pub said: Vec<u8>,
+    reader: Reader,
 }
 
 impl Device {
@@ -32,7 +35,11 @@ impl Device {
             .wait_for_capture()
             .and_then(|()| board.wait_for_console());
         ready.unwrap_or_else(|error| panic!("{error}"));
-        let mut device = Self { board };
+        let mut device = Self {
+            board,
+            said: Vec::new(),
+            reader: Reader::default(),
+        };
         device.ask("AT+PROTOCOL=CONSOLE,BEAST");
         device
     }
@@ -62,26 +69,43 @@ impl Device {
 
     /// Plays a source to its end and gives what was reported of it.
     pub fn play(&mut self, source: Box<dyn PulseSource + Send>) -> Vec<Decoded> {
+        let playback = self.play_on(source);
+        let mut frames = Vec::new();
+        while !self.board.playback_finished() {
+            frames.extend(self.collect(playback, 1));
+        }
+        frames.extend(self.collect(playback, TAIL_MS));
+        frames
+    }
+
+    /// Starts to play a source.
+    pub fn play_on(&mut self, source: Box<dyn PulseSource + Send>) -> Playback {
         self.board.console_read();
-        let playback = match self.board.play(source) {
+        self.said.clear();
+        self.reader = Reader::default();
+        match self.board.play(source) {
             Ok(playback) => playback,
             Err(error) => panic!("{error}"),
-        };
-        let mut reader = Reader::default();
+        }
+    }
+
+    /// Runs on and gives what was reported meanwhile.
+    pub fn collect(&mut self, playback: Playback, ms: u64) -> Vec<Decoded> {
         let mut frames = Vec::new();
-        let mut left = TAIL_MS;
-        while left > 0 {
+        for _ in 0..ms {
             self.run_ms(1);
-            left -= u64::from(self.board.playback_finished());
-            for message in reader.read(&self.board.console_read()) {
+            let said = self.board.console_read();
+            let messages = self.reader.read(&said);
+            self.said.extend(said);
+            frames.extend(messages.into_iter().map(|message| {
                 let start = playback.start_tick as i64 / TICKS_A_COUNT;
                 let counts = message.stamp as i64 - STAMP_AFTER_ARRIVAL - start;
-                frames.push(Decoded {
+                Decoded {
                     bytes: message.bytes,
                     repaired: 0,
                     arrival_ps: Some(counts * TWELVE_COUNTS_PS / 12),
-                });
-            }
+                }
+            }));
         }
         frames
     }

@@ -6,17 +6,21 @@
 //! | `native` | a scene or recording through a slicer and the native engine |
 //! | `device` | the same through the shipped image in the twin |
 //! | `mutability` | Debian's dump1090-mutability on the same samples |
+//! | `nothing` | air in which nobody sends, for what is invented |
 //! | `points` | the simulated scenes, and what the prototype study measured on such |
 //! | `recordings` | the recordings of `../shared/data` |
 //! | `score` | decoded frames against a scene's truth |
+//! | `table` | the sensitivity table that is committed |
 
 pub mod device;
 pub mod fair;
 pub mod mutability;
 pub mod native;
+pub mod nothing;
 pub mod points;
 pub mod recordings;
 pub mod score;
+pub mod table;
 
 /// A frame that a decoder gave.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -360,6 +360,7 @@ impl Chip {
         let cpu = &self.cores[k].cpu;
         if let Some(profile) = &mut self.profile {
             let spent = profile::Spent {
+                times: 1,
                 cycles: cpu.time - before.0,
                 waits: cpu.waits - before.1,
                 misses: self.bus.xip.misses[k] - before.2,

@@ -10,6 +10,8 @@ const SRAM_BASE: u32 = 0x2000_0000;
 /// What an instruction, a function or a core has spent.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Debug)]
 pub struct Spent {
+    /// Instructions executed.
+    pub times: u64,
     pub cycles: u64,
     /// Of these, waiting for a port or for flash.
     pub waits: u64,
@@ -19,6 +21,7 @@ pub struct Spent {
 
 impl std::ops::AddAssign for Spent {
     fn add_assign(&mut self, other: Self) {
+        self.times += other.times;
         self.cycles += other.cycles;
         self.waits += other.waits;
         self.misses += other.misses;
