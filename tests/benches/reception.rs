@@ -1,7 +1,7 @@
 //! Reception: the recordings of others, fairly counted, and simulated scenes, beside dump1090-mutability on the same air.
 //!
 //! `--short`: fewer frames a point, the native engine alone. Otherwise the board's own slicer is also heard by the shipped image in the twin.
-//! `--points <text>`: only the points whose name contains it.
+//! `--points TEXT`: only the points whose name contains it. `--floor DB`: the trigger level of the slicers that have a floor, over the noise in 8 MHz.
 
 use std::process::ExitCode;
 
@@ -10,8 +10,8 @@ use tests::reception::device::Device;
 use tests::reception::native::{Rendered, SLICERS};
 use tests::reception::recordings::{Clip, DENSE, MODES1};
 use tests::reception::score::{Score, score};
-use tests::reception::{fair, mutability, native, points};
-use twin::front_end::{FrontEnd, Player};
+use tests::reception::{Decoded, fair, mutability, native, points};
+use twin::front_end::{FrontEnd, Player, Slicer};
 use twin::source::Format;
 use twin::source::scene::{Scene, record, wave};
 
@@ -52,6 +52,13 @@ fn folder() -> Result<std::path::PathBuf, String> {
     Ok(folder)
 }
 
+/// What a slicer and the native engine make of a level.
+fn heard(level: &Rendered, slicer: Slicer, noise_dbm: f32) -> Vec<Decoded> {
+    let floor_db = tests::number_option("--floor", native::FLOOR_OVER_NOISE_DB);
+    let trigger_level_mv = native::trigger_level_mv(slicer, noise_dbm, floor_db);
+    native::run_at(level, slicer, trigger_level_mv).0
+}
+
 /// Counts of one recording by each decoder: the slicers natively, the device, the peer.
 struct Counts {
     native: Vec<usize>,
@@ -65,7 +72,7 @@ fn clip(clip: &Clip, device: &mut Option<Device>) -> Result<Counts, String> {
     let level = Rendered::of(&mut recording);
     let native = SLICERS
         .iter()
-        .map(|(_, slicer)| fair::count(&native::run(&level, *slicer, noise_dbm).0))
+        .map(|(_, slicer)| fair::count(&heard(&level, *slicer, noise_dbm)))
         .collect();
     let device = device.as_mut().map(|device| {
         let player = Player::new(level.clone(), &FrontEnd::ADSBEE_1090);
@@ -158,7 +165,7 @@ fn scenes(bench: &mut Bench, device: &mut Option<Device>, frames: usize) -> Resu
         let level = Rendered::of(&mut scene.wave(wave::STEP_PS));
         let mut scores: Vec<Option<Score>> = SLICERS
             .iter()
-            .map(|(_, slicer)| Some(score(&scene, &native::run(&level, *slicer, noise_dbm).0)))
+            .map(|(_, slicer)| Some(score(&scene, &heard(&level, *slicer, noise_dbm))))
             .collect();
         scores.push(device.as_mut().map(|device| {
             let player = Player::new(level.clone(), &FrontEnd::ADSBEE_1090);

@@ -7,7 +7,7 @@ use std::process::Command;
 use crate::{fw, peers, workspace};
 
 /// The benchmarks and what they measure.
-const BENCHES: [(&str, &str); 4] = [
+const BENCHES: [(&str, &str); 9] = [
     (
         "twin",
         "emulated MHz and share of real time: one core, two cores, two cores with capture and DMA, the image on real traffic",
@@ -15,6 +15,26 @@ const BENCHES: [(&str, &str); 4] = [
     (
         "reception",
         "recordings and simulated scenes beside dump1090-mutability; --short: fewer frames, no twin; --points TEXT: those points alone",
+    ),
+    (
+        "sensitivity",
+        "every simulated scene natively, each slicer; --save renews the table that a test holds",
+    ),
+    (
+        "saturation",
+        "8 333 long frames a second back to back in the twin; --ms N, --profile",
+    ),
+    (
+        "cycles",
+        "cycles of each stage in the shipped image against its budget",
+    ),
+    (
+        "arrival",
+        "error of the time of arrival by level; --frames N, --nominal",
+    ),
+    (
+        "false-frames",
+        "frames that nobody sent, on noise and on Mode A/C alone; --minutes N, --threads N, --slicer KIND",
     ),
     (
         "cpu-peers",
@@ -32,7 +52,7 @@ const PEERS: &str = "twin-peers";
 pub fn list() -> String {
     BENCHES
         .iter()
-        .map(|(name, what)| format!("  {name:<11} {what}\n"))
+        .map(|(name, what)| format!("  {name:<12} {what}\n"))
         .collect()
 }
 

@@ -17,7 +17,7 @@ use twin::source::scene::aircraft::address_of;
 use twin::source::scene::traffic::{ModeAc, Range, df11};
 use twin::source::scene::{Content, Emission, Fleet, Role, Tolerances, dbm_at_snr, wave};
 
-use super::native::trigger_level_mv;
+use super::native::{FLOOR_OVER_NOISE_DB, trigger_level_mv};
 
 /// Addresses kept known.
 pub const KNOWN: usize = 400;
@@ -134,7 +134,11 @@ impl Run {
         let wave = wave::Wave::new(fleet, Box::new(quiet), options);
         let mut player = Player::new(wave, &FrontEnd::with_slicer(self.slicer));
         let settings = Options {
-            trigger_level_mv: Some(trigger_level_mv(self.slicer, NOISE_DBM)),
+            trigger_level_mv: Some(trigger_level_mv(
+                self.slicer,
+                NOISE_DBM,
+                FLOOR_OVER_NOISE_DB,
+            )),
             ..Options::default()
         };
         let sent: HashSet<Vec<u8>> = (0..KNOWN)
