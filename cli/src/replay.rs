@@ -80,7 +80,7 @@ fn by_native(
         let heard = Heard {
             count: stamp as i64 - start,
             frame: raw.frame,
-            repaired: raw.repaired,
+            repaired: raw.repaired(),
         };
         if failed.is_none() {
             failed = printer.frame(&heard).err();

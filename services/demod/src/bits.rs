@@ -10,10 +10,13 @@
 
 use crate::ring::Aligned;
 
-/// The four margins of a word, one a byte, biased by 0x80: first-half ones minus second-half ones, -4 to 4, doubled, then one more for a centre
+/// The biased margin of a tie, which reads as 0. A margin must exceed it to be a 1.
+pub(crate) const TIE: u32 = 0x7F;
+
+/// The four margins of a word, one a byte, biased by [`TIE`]: first-half ones minus second-half ones, -4 to 4, doubled, then one more for a centre
 /// that leans to a side.
 #[inline(always)]
-fn margins(samples: u32) -> u32 {
+pub(crate) fn margins(samples: u32) -> u32 {
     let pairs = samples - ((samples >> 1) & 0x5555_5555);
     let nibbles = (pairs & 0x3333_3333) + ((pairs >> 2) & 0x3333_3333);
     let first = (nibbles >> 4) & 0x0F0F_0F0F;

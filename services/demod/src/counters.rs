@@ -1,12 +1,21 @@
 //! Counters of every stage: one writer (the core that demodulates), any number of readers.
 //!
 //! ```text
-//!   words ─ gate ─ candidates = superseded + rejected_by_score + demodulated
-//!   demodulated = no_bits + bad_format + bad_parity + unknown_address + unsure
-//!                               + accepted_exact + accepted_interrogator + accepted_address
+//!   words ─ gate ─ with_bits ─ preamble ─ candidates = superseded + rejected_by_score + demodulated
+//!   demodulated = no_bits + bad_format + bad_parity + unknown_address + unsure + implausible + no_start
+//!                 + accepted_exact + accepted_interrogator + accepted_address + accepted_repaired + accepted_address_repaired
 //! ```
-//! A candidate is one phase that the gate let through. Each ends in exactly one of the outcomes. The core has no atomic add; with a single
-//! writer a load and a store are one.
+//! A candidate is one phase at which a preamble may start with bits behind it, or a place where bits begin without a preamble. Each ends in exactly one of
+//! the outcomes. Beside them every check of a parity is counted, by kind:
+//!
+//! | counter | a check fits by chance once in | and then needs |
+//! |---|---|---|
+//! | `trials_exact` | 2^24 (DF11 with a code: 79 times as often) | nothing (with a code: an address heard) |
+//! | `trials_address` | 2^24 / addresses heard | certain bits, fields with assigned values |
+//! | `trials_repair` | 2^24; those that fitted are `repairs_fitting` | an address heard |
+//! | `trials_address_repair` | 2^24 / addresses heard | certain bits, fields with assigned values |
+//!
+//! The core has no atomic add; with a single writer a load and a store are one.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -48,11 +57,13 @@ counters! {
     overrun_words,
     /// Times the ring was lapped.
     overruns,
-    /// Phases the gate let through.
+    /// Words behind which bits stand.
+    with_bits,
+    /// Phases at which a preamble may start, and places where bits begin without one.
     candidates,
-    /// Candidates right behind one that was asked for bits or tried, or inside an accepted frame.
+    /// Candidates right behind one that was tried, or inside an accepted frame.
     superseded,
-    /// Candidates with no bits behind them, or that look too little like a preamble.
+    /// Candidates that look too little like a preamble.
     rejected_by_score,
     /// Candidates that were demodulated at all their phases.
     demodulated,
@@ -60,24 +71,48 @@ counters! {
     no_bits,
     /// Demodulated, but no DF that exists.
     bad_format,
-    /// DF11, 17, 18 or 19 whose parity does not fit.
+    /// DF11, 17, 18 or 19 whose parity does not fit, repaired or not.
     bad_parity,
     /// The parity would fit an address that was not heard lately.
     unknown_address,
     /// Too unsure to be believed by a known address alone.
     unsure,
+    /// A known address, but a field has a value that no transponder sends.
+    implausible,
+    /// Bits without a preamble, and no start at which the parity fits.
+    no_start,
     /// Accepted: residual zero (DF11, 17, 18, 19).
     accepted_exact,
     /// Accepted: DF11 with an interrogator code, from an address heard lately.
     accepted_interrogator,
     /// Accepted: address parity of an address heard lately.
     accepted_address,
+    /// Accepted: DF11, 17 or 18 of an address heard lately, one or two bits repaired.
+    accepted_repaired,
+    /// Accepted: address parity of an address heard lately, one bit repaired.
+    accepted_address_repaired,
+    /// Of `accepted_exact`: found without a preamble.
+    headless,
+    /// Parities of DF11, 17, 18 and 19 checked as received.
+    trials_exact,
+    /// Address parities checked as received.
+    trials_address,
+    /// Residuals compared with the syndromes of one or two bits.
+    trials_repair,
+    /// Of these: that fitted.
+    repairs_fitting,
+    /// Address parities checked with a bit flipped.
+    trials_address_repair,
 }
 
 impl CountersSnapshot {
     /// Frames accepted, of every kind.
     pub fn accepted(&self) -> u32 {
-        self.accepted_exact + self.accepted_interrogator + self.accepted_address
+        self.accepted_exact
+            + self.accepted_interrogator
+            + self.accepted_address
+            + self.accepted_repaired
+            + self.accepted_address_repaired
     }
 
     /// Whether every candidate has exactly one outcome.
@@ -87,6 +122,8 @@ impl CountersSnapshot {
             + self.bad_parity
             + self.unknown_address
             + self.unsure
+            + self.implausible
+            + self.no_start
             + self.accepted();
         self.demodulated == judged
             && self.candidates == self.superseded + self.rejected_by_score + self.demodulated

@@ -1,37 +1,33 @@
-//! The demodulator: walks the ring word by word, tries what the gate lets through, and emits each transmission once.
+//! The demodulator: walks the ring word by word, tries what gate and preamble let through, and emits each transmission once.
 //!
 //! ```text
-//!   word n ─ gate ─ phases ─ for each, oldest first:
-//!        inside an accepted frame, or tried already ──────────────► superseded
-//!        no bits behind it ───────────────────────────────────────► rejected_by_score (and the hit right behind it: superseded)
+//!   word n ─ gate: bits behind it? ─ preamble: at which phases? ─ for each, oldest first:
+//!        tried already, or inside an accepted frame ──────────────► superseded
 //!        too many mismatches with a preamble at every phase ──────► rejected_by_score
-//!        demodulated at the phase and its neighbours:
-//!            no such DF ──────────────────────────────────────────► bad_format
-//!            the first 16 bits are too unsure ────────────────────► no_bits
-//!            DF11 17 18 19, residual not 0 ───────────────────────► bad_parity
-//!            DF11 with code, or address parity, address not heard ► unknown_address
-//!            the same, heard, but its bits hang by a thread ──────► unsure
-//!            else ────────────────────────────────────────────────► RawFrame; go on behind it
+//!        tried at the phase and its neighbours, see `trial` ──────► one outcome; a RawFrame ends the word
+//!   strong bits began three words ago and no preamble was tried there ─ `headless` ─► no_start, or a RawFrame
 //! ```
-//! Every phase of a candidate is tested as it is. An exact frame ends the search; a frame that a known address vouches for waits until all phases
-//! were seen, because an exact one is worth more.
+//! A refused candidate blocks nothing: a stronger frame that starts inside a weaker one is tried when its word comes. Behind an accepted frame the walk goes on
+//! 12 µs before its end, because a stronger preamble may cover the last bits of a frame whose parity still holds. What starts earlier inside it would have destroyed it.
 //!
-//! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 132 µs.
+//! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 144 µs.
 
-use crate::bits;
 use crate::counters::{Counters, add};
-use crate::gate::Half;
+use crate::gate::{Gate, Pairs, REACH};
+use crate::headless::{self, STRONG, WAIT_WORDS};
 use crate::heard::Heard;
-use crate::ring::{Aligned, RING_WORDS, SampleRing};
-use crate::score::{MOST_MISMATCHES, bits_follow, mismatches, ones};
+use crate::preamble::{self, mismatches, ones};
+use crate::repair::Flips;
+use crate::ring::{RING_WORDS, SampleRing};
+use crate::trial::{Outcome, Tried, from_sample, received, try_phases};
 use crate::{SAMPLES_PER_WORD, TICKS_PER_SAMPLE};
 use mode_s::Frame;
-use mode_s::crc24;
-use mode_s::frame::{LONG_BYTES, SHORT_BYTES};
-use mode_s::parity::HIGHEST_INTERROGATOR_CODE;
+use mode_s::frame::LONG_BYTES;
 
-/// Words that must follow a word before it is looked at: 64 + 896 samples of a long frame, its start anywhere in the word, two phases more.
-pub const LOOKAHEAD_WORDS: u32 = 33;
+/// Words that must follow a word before it is looked at: 64 + 896 samples of a long frame, its start anywhere in the word, two phases more; or a
+/// frame without preamble that starts up to four words later.
+pub const LOOKAHEAD_WORDS: u32 = 36;
+const _: () = assert!(LOOKAHEAD_WORDS > REACH);
 
 /// Words the writer may be ahead before the oldest are given up. The rest of the ring is what the writer may fill while a call works off this backlog.
 const MOST_BEHIND: u64 = RING_WORDS as u64 * 3 / 4;
@@ -40,42 +36,41 @@ const MOST_BEHIND: u64 = RING_WORDS as u64 * 3 / 4;
 const PREAMBLE_SAMPLES: u32 = 64;
 /// Samples a bit.
 const BIT_SAMPLES: u32 = 8;
-
-/// Least certainty of the first 16 bits, of 64, below which there is nothing to demodulate. Noise has a mean of 18 and exceeds 23 one time in
-/// ten; one true frame in a hundred of the recordings has less than 26.
-const LEAST_CERTAINTY: u32 = 22;
-
-/// Least mean certainty of a bit, in quarters of a sample count (4 would be every sample of both halves right), of a frame whose only proof is
-/// a known address. Noise has a mean near 1.1.
-const LEAST_CERTAINTY_QUARTERS: u32 = 7;
-
-/// Phases tried around a candidate, the likeliest first: the gate's first hit is early, most frames start a sample or two behind it.
-const PHASES: [i32; 4] = [1, 2, 0, -1];
+/// Samples before an accepted frame's end at which another may start: 12 µs, a preamble and four bits.
+const TAIL_SAMPLES: u64 = 96;
+/// Words before strong bits began in which their preamble may stand, tried.
+const TRIED_WITHIN: u32 = 8;
 
 /// A frame whose parity fits, and when it came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawFrame {
-    /// The bits as received.
+    /// The bits, repaired.
     pub frame: Frame,
+    /// Which bits were repaired: [`RawFrame::received`] takes them back.
+    pub flips: Flips,
     /// Tick (120 MHz) of the leading edge of the preamble's first pulse, from the first capture sample.
     pub arrival: u64,
-    /// Bits repaired; none so far.
-    pub repaired: u8,
     /// Signal level in a hundredth of a dBm; not measured so far.
     pub level: Option<i16>,
 }
 
-/// What one phase of a candidate gave. In rising order of worth: the best one is a candidate's outcome.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Outcome {
-    NoBits,
-    BadFormat,
-    BadParity,
-    UnknownAddress,
-    Unsure,
-    Address,
-    Interrogator,
-    Exact,
+impl RawFrame {
+    /// The bits as received, before repair.
+    pub fn received(&self) -> Frame {
+        let mut bytes = [0; LONG_BYTES];
+        let sent = self.frame.bytes();
+        for (to, from) in bytes.iter_mut().zip(sent) {
+            *to = *from;
+        }
+        self.flips.apply(&mut bytes);
+        // DF is never flipped, so the length still fits.
+        Frame::from_bytes(&bytes[..sent.len()]).unwrap_or(self.frame)
+    }
+
+    /// How many bits were repaired.
+    pub fn repaired(&self) -> u8 {
+        self.flips.count()
+    }
 }
 
 /// The state between calls.
@@ -85,9 +80,11 @@ pub struct Demodulator {
     /// First sample (from the start of capture) that is not behind an accepted frame or a tried candidate.
     free_from: u64,
     heard: Heard,
-    /// The gate's half preamble of the word `gated_to`, and the word after that: what need not be gated twice.
-    gated: (Half, u32),
-    gated_to: u32,
+    gate: Gate,
+    /// Where strong bits began, the last word that had them, and the last word at which a preamble was tried.
+    strong_since: u32,
+    strong_last: u32,
+    tried_last: u32,
 }
 
 impl Demodulator {
@@ -97,8 +94,10 @@ impl Demodulator {
             next: 0,
             free_from: 0,
             heard: Heard::new(),
-            gated: (Half::NONE, 0),
-            gated_to: u32::MAX,
+            gate: Gate::new(),
+            strong_since: 0,
+            strong_last: u32::MAX,
+            tried_last: u32::MAX,
         }
     }
 
@@ -115,8 +114,8 @@ impl Demodulator {
             self.skip(written, counters);
         }
         self.heard.at_word(self.next);
-        while let Some(hits) = self.find(ring, written, counters) {
-            if let Some(frame) = self.examine(ring, hits, counters) {
+        while let Some(pairs) = self.find(ring, written, counters) {
+            if let Some(frame) = self.examine(ring, pairs, counters) {
                 sink(frame);
             }
         }
@@ -131,138 +130,150 @@ impl Demodulator {
         self.next = from;
     }
 
-    /// Gates words until one has a hit behind which bits follow, or no more can be looked at. Gives the hits from that one on; their word is
-    /// `self.next`.
-    #[inline(never)]
-    fn find(&mut self, ring: &SampleRing, written: u64, counters: &Counters) -> Option<u32> {
+    /// Goes to the next word behind which bits stand: `self.next`. `None` when no more can be looked at.
+    #[inline(always)]
+    fn find(&mut self, ring: &SampleRing, written: u64, counters: &Counters) -> Option<Pairs> {
         let ready = written.saturating_sub(self.next + u64::from(LOOKAHEAD_WORDS)) as u32;
         let first = self.next as u32;
-        let end = first.wrapping_add(ready);
-        let mut index = first;
-        let (mut half, mut after) = if self.gated_to == first {
-            self.gated
-        } else {
-            let after = ring.word(index.wrapping_add(1));
-            (Half::of(ring.word(index), after), after)
-        };
-        let mut found = None;
-        while index != end {
-            let newest = ring.word(index.wrapping_add(2));
-            let next = Half::of(after, newest);
-            let hits = half.hits(next);
-            after = newest;
-            half = next;
-            if hits != 0 {
-                let rest = self.sift(ring, index, hits, index == first, counters);
-                if rest != 0 {
-                    found = Some(rest);
-                    break;
-                }
-            }
-            index = index.wrapping_add(1);
-        }
-        // The gate's state is that of the next word.
-        self.gated = (half, after);
-        self.gated_to = if found.is_some() {
-            index.wrapping_add(1)
-        } else {
-            index
-        };
-        let passed = index.wrapping_sub(first);
-        self.next += u64::from(passed);
-        add(&counters.words, passed);
-        found
+        let found = self.gate.find(ring, first, first.wrapping_add(ready));
+        let passed = found.map_or(ready, |(word, _)| word.wrapping_sub(first));
+        self.pass(passed, counters);
+        found.map(|(_, pairs)| pairs)
     }
 
-    /// Counts a word's hits, and passes over those that were tried before or have no bits behind them.
+    /// Steps on by so many words.
+    #[inline(always)]
+    fn pass(&mut self, words: u32, counters: &Counters) {
+        self.next += u64::from(words);
+        add(&counters.words, words);
+    }
+
+    /// Looks at the word `self.next`, behind which bits stand, and steps on: behind it, or near the end of the frame it found.
     #[inline(never)]
-    fn sift(
-        &self,
+    fn examine(
+        &mut self,
         ring: &SampleRing,
-        word: u32,
-        hits: u32,
-        is_first: bool,
+        pairs: Pairs,
         counters: &Counters,
-    ) -> u32 {
-        add(&counters.candidates, ones(hits));
-        let mut fresh = hits;
-        // What was tried or accepted reaches into the first word at most.
-        if is_first {
-            let start = self.next * u64::from(SAMPLES_PER_WORD);
-            let taken = self.free_from.saturating_sub(start);
-            fresh = from_phase(hits, taken.min(u64::from(SAMPLES_PER_WORD)) as u32);
-            add(&counters.superseded, ones(hits ^ fresh));
-        }
-        first_with_bits(ring, word, fresh, counters)
+    ) -> Option<RawFrame> {
+        add(&counters.with_bits, 1);
+        let word = self.next as u32;
+        let hits = preamble::hits(ring, word) & pairs.phases();
+        let frame = if hits != 0 {
+            self.try_hits(ring, hits, counters)
+        } else {
+            None
+        };
+        let frame = frame.or_else(|| self.try_without_preamble(ring, word, pairs, counters));
+        let next = self.next + 1;
+        let behind = if frame.is_some() {
+            (self.free_from / u64::from(SAMPLES_PER_WORD)).max(next)
+        } else {
+            next
+        };
+        self.pass((behind - self.next) as u32, counters);
+        frame
     }
 
-    /// Tries the hits of the word `self.next`, the first of which has bits behind it, until one is a frame, and steps on.
+    /// Tries the phases of the word `self.next` at which a preamble may start, until one is a frame.
     #[inline(never)]
-    fn examine(&mut self, ring: &SampleRing, hits: u32, counters: &Counters) -> Option<RawFrame> {
-        let word = self.next;
-        let start = word * u64::from(SAMPLES_PER_WORD);
-        let mut rest = hits;
-        let mut bytes = [0; LONG_BYTES];
-        let mut accepted = None;
+    fn try_hits(&mut self, ring: &SampleRing, hits: u32, counters: &Counters) -> Option<RawFrame> {
+        let word = self.next as u32;
+        let start = self.next * u64::from(SAMPLES_PER_WORD);
+        add(&counters.candidates, ones(hits));
+        let taken = self.free_from.saturating_sub(start);
+        let mut rest = from_phase(hits, taken.min(u64::from(SAMPLES_PER_WORD)) as u32);
+        add(&counters.superseded, ones(hits ^ rest));
         while rest != 0 {
             let sample = first_phase(rest);
-            let Some((outcome, phase)) =
-                try_phases(ring, word as u32, sample, &self.heard, &mut bytes)
-            else {
+            let Some(tried) = try_phases(ring, word, sample, &self.heard, counters) else {
                 add(&counters.rejected_by_score, 1);
-                rest = first_with_bits(ring, word as u32, from_phase(rest, sample + 1), counters);
+                rest = from_phase(rest, sample + 1);
                 continue;
             };
             add(&counters.demodulated, 1);
+            self.tried_last = word;
             // The neighbours were tried with it.
             self.free_from = start + u64::from(sample + 2);
             let others = from_phase(rest, sample + 1);
             rest = from_phase(rest, sample + 2);
             add(&counters.superseded, u32::from(others != rest));
-            add(
-                match outcome {
-                    Outcome::NoBits => &counters.no_bits,
-                    Outcome::BadFormat => &counters.bad_format,
-                    Outcome::BadParity => &counters.bad_parity,
-                    Outcome::UnknownAddress => &counters.unknown_address,
-                    Outcome::Unsure => &counters.unsure,
-                    Outcome::Address => &counters.accepted_address,
-                    Outcome::Interrogator => &counters.accepted_interrogator,
-                    Outcome::Exact => &counters.accepted_exact,
-                },
-                1,
-            );
-            if outcome < Outcome::Address {
-                rest = first_with_bits(ring, word as u32, rest, counters);
-                continue;
+            count(tried.outcome, counters);
+            if tried.outcome.is_accepted() {
+                let phase = tried.phase
+                    + leading_phase(ring, word, sample.wrapping_add_signed(tried.phase));
+                let first = (start + u64::from(sample)).saturating_add_signed(i64::from(phase));
+                add(&counters.superseded, ones(rest));
+                return self.accept(first, &tried);
             }
-            let Ok(frame) = Frame::from_bytes(received(&bytes)) else {
-                break;
-            };
-            if let (Outcome::Exact, Some(mode_s::Address::Icao(icao))) =
-                (outcome, mode_s::Parity::of(&frame).address())
-            {
-                self.heard.note(icao.0);
-            }
-            let phase = phase + leading_phase(ring, word as u32, sample.wrapping_add_signed(phase));
-            let first = (start + u64::from(sample)).saturating_add_signed(i64::from(phase));
-            let bits = received(&bytes).len() as u32 * 8;
-            self.free_from = first + u64::from(PREAMBLE_SAMPLES + BIT_SAMPLES * bits);
-            // A frame is longer than a word.
-            add(&counters.superseded, ones(rest));
-            rest = 0;
-            accepted = Some(RawFrame {
-                frame,
-                arrival: ticks(first),
-                repaired: 0,
-                level: None,
-            });
         }
-        // Words wholly inside an accepted frame need no gate.
-        let behind = (self.free_from / u64::from(SAMPLES_PER_WORD)).max(word + 1);
-        add(&counters.words, (behind - word) as u32);
-        self.next = behind;
-        accepted
+        None
+    }
+
+    /// Searches where strong bits began a few words ago, if no preamble was tried there.
+    #[inline(never)]
+    fn try_without_preamble(
+        &mut self,
+        ring: &SampleRing,
+        word: u32,
+        pairs: Pairs,
+        counters: &Counters,
+    ) -> Option<RawFrame> {
+        let (pair, opposed) = pairs.best();
+        if opposed < STRONG {
+            return None;
+        }
+        if self.strong_last != word.wrapping_sub(1) {
+            self.strong_since = word;
+        }
+        self.strong_last = word;
+        let tried = self
+            .tried_last
+            .wrapping_sub(self.strong_since.wrapping_sub(TRIED_WITHIN));
+        if word.wrapping_sub(self.strong_since) != WAIT_WORDS || tried <= TRIED_WITHIN + WAIT_WORDS
+        {
+            return None;
+        }
+        add(&counters.candidates, 1);
+        add(&counters.demodulated, 1);
+        // Two words before those that showed the bits: a start in either is found.
+        let from = self.next.saturating_sub(u64::from(WAIT_WORDS + 1));
+        let Some(found) = headless::search(ring, from as u32, pair, counters) else {
+            add(&counters.no_start, 1);
+            return None;
+        };
+        add(&counters.headless, 1);
+        count(Outcome::Exact, counters);
+        let first_bit = from * u64::from(SAMPLES_PER_WORD) + u64::from(found.first_bit);
+        let tried = Tried {
+            outcome: Outcome::Exact,
+            phase: 0,
+            flips: Flips::NONE,
+            bytes: found.bytes,
+        };
+        self.accept(
+            first_bit.saturating_sub(u64::from(PREAMBLE_SAMPLES)),
+            &tried,
+        )
+    }
+
+    /// A frame whose preamble's first sample is `first`.
+    fn accept(&mut self, first: u64, tried: &Tried) -> Option<RawFrame> {
+        let frame = Frame::from_bytes(received(&tried.bytes)).ok()?;
+        if let (Outcome::Exact, Some(mode_s::Address::Icao(icao))) =
+            (tried.outcome, mode_s::Parity::of(&frame).address())
+        {
+            self.heard.note(icao.0);
+        }
+        let bits = received(&tried.bytes).len() as u32 * 8;
+        let samples = u64::from(PREAMBLE_SAMPLES + BIT_SAMPLES * bits);
+        self.free_from = first + samples - TAIL_SAMPLES;
+        Some(RawFrame {
+            frame,
+            flips: tried.flips,
+            arrival: ticks(first),
+            level: None,
+        })
     }
 }
 
@@ -272,29 +283,28 @@ impl Default for Demodulator {
     }
 }
 
-/// The bytes that the downlink format says were sent.
-fn received(bytes: &[u8; LONG_BYTES]) -> &[u8] {
-    if bytes[0] & 0x80 != 0 {
-        bytes
-    } else {
-        bytes.first_chunk::<SHORT_BYTES>().map_or(bytes, |b| b)
-    }
+/// Counts a candidate's outcome.
+fn count(outcome: Outcome, counters: &Counters) {
+    let counter = match outcome {
+        Outcome::NoBits => &counters.no_bits,
+        Outcome::BadFormat => &counters.bad_format,
+        Outcome::BadParity => &counters.bad_parity,
+        Outcome::UnknownAddress => &counters.unknown_address,
+        Outcome::Unsure => &counters.unsure,
+        Outcome::Implausible => &counters.implausible,
+        Outcome::RepairedAddress => &counters.accepted_address_repaired,
+        Outcome::Repaired => &counters.accepted_repaired,
+        Outcome::Address => &counters.accepted_address,
+        Outcome::Interrogator => &counters.accepted_interrogator,
+        Outcome::Exact => &counters.accepted_exact,
+    };
+    add(counter, 1);
 }
 
 /// Ticks of so many samples: 15 each. The black box keeps the compiler from calling the library's 64-bit multiplication instead.
 fn ticks(samples: u64) -> u64 {
     const { assert!(TICKS_PER_SAMPLE == 15) };
     core::hint::black_box(samples << 4) - samples
-}
-
-/// The samples from `sample` of `word` on; `sample` may be up to a word before it (wrapped).
-#[inline(always)]
-fn from_sample(ring: &SampleRing, word: u32, sample: u32) -> Aligned<'_> {
-    Aligned::new(
-        ring,
-        word.wrapping_sub(1),
-        sample.wrapping_add(SAMPLES_PER_WORD),
-    )
 }
 
 /// The hits from phase `sample` of a word on.
@@ -319,125 +329,16 @@ fn first_phase(hits: u32) -> u32 {
     phase
 }
 
-/// The hits from the first one on behind which bits follow; the others are counted as rejected.
-#[inline(never)]
-fn first_with_bits(ring: &SampleRing, word: u32, hits: u32, counters: &Counters) -> u32 {
-    let mut rest = hits;
-    while rest != 0 {
-        let sample = first_phase(rest);
-        let mut data = Aligned::new(ring, word, sample + PREAMBLE_SAMPLES + 1);
-        if bits_follow(&mut data) {
-            break;
-        }
-        add(&counters.rejected_by_score, 1);
-        // The next phase would see the same.
-        let others = from_phase(rest, sample + 1);
-        rest = from_phase(rest, sample + 2);
-        if others != rest {
-            add(&counters.superseded, 1);
-        }
-    }
-    rest
-}
-
-/// The best that a candidate and its neighbours give: outcome and phase, and its bytes. `None` when no phase looks like a preamble.
-#[inline(never)]
-fn try_phases(
-    ring: &SampleRing,
-    word: u32,
-    sample: u32,
-    heard: &Heard,
-    bytes: &mut [u8; LONG_BYTES],
-) -> Option<(Outcome, i32)> {
-    let mut best: Option<(Outcome, i32)> = None;
-    let mut last = 0;
-    for phase in PHASES {
-        let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
-        if mismatches(samples.take(), samples.take()) > MOST_MISMATCHES {
-            continue;
-        }
-        let outcome = demodulate(samples, heard, bytes);
-        last = phase;
-        if best.is_none_or(|(so_far, _)| outcome > so_far) {
-            best = Some((outcome, phase));
-        }
-        if outcome == Outcome::Exact {
-            break;
-        }
-    }
-    // `bytes` holds the last phase tried. Only frames vouched for by an address come here, and few of those.
-    if let Some((outcome, phase)) = best
-        && outcome >= Outcome::Address
-        && phase != last
-    {
-        let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
-        samples.take();
-        samples.take();
-        demodulate(samples, heard, bytes);
-    }
-    best
-}
-
 /// How many samples from an accepted phase to the one that fits the preamble best, the earliest of equals: a frame also comes out right a
 /// sample or two off.
 fn leading_phase(ring: &SampleRing, word: u32, sample: u32) -> i32 {
     let mut best = (u32::MAX, 0);
     for phase in -2..=2 {
         let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
-        let off = mismatches(samples.take(), samples.take());
+        let off = mismatches(&mut samples);
         if off < best.0 {
             best = (off, phase);
         }
     }
     best.1
-}
-
-/// Demodulates one phase and judges it. `samples` stands at the first bit.
-#[inline(never)]
-fn demodulate(from: Aligned, heard: &Heard, bytes: &mut [u8; LONG_BYTES]) -> Outcome {
-    let mut samples = from;
-    let (first, sure_of_first) = bits::byte_and_certainty(&mut samples);
-    // DF 0, 4, 5, 11, 16 to 21 and 24 to 31 exist.
-    const FORMATS: u32 = 0xFF3F_0831;
-    if FORMATS >> (first >> 3) & 1 == 0 {
-        return Outcome::BadFormat;
-    }
-    let (second, sure_of_second) = bits::byte_and_certainty(&mut samples);
-    if sure_of_first + sure_of_second < LEAST_CERTAINTY {
-        return Outcome::NoBits;
-    }
-    let length = if first & 0x80 != 0 {
-        LONG_BYTES
-    } else {
-        SHORT_BYTES
-    };
-    for byte in bytes.iter_mut().take(length).skip(2) {
-        *byte = bits::byte(&mut samples);
-    }
-    bytes[0] = first;
-    bytes[1] = second;
-    let residual = crc24::residual(received(bytes));
-    let (vouched, by) = match first >> 3 {
-        17..=19 if residual == 0 => return Outcome::Exact,
-        17..=19 => return Outcome::BadParity,
-        11 => match residual {
-            0 => return Outcome::Exact,
-            1..=HIGHEST_INTERROGATOR_CODE => (
-                u32::from_be_bytes([0, bytes[1], bytes[2], bytes[3]]),
-                Outcome::Interrogator,
-            ),
-            _ => return Outcome::BadParity,
-        },
-        _ => (residual, Outcome::Address),
-    };
-    if !heard.knows(vouched) {
-        return Outcome::UnknownAddress;
-    }
-    let mut again = from;
-    let words = length as u32 * 2;
-    let certainty: u32 = (0..words).map(|_| bits::certainty(again.take())).sum();
-    if certainty < words * LEAST_CERTAINTY_QUARTERS {
-        return Outcome::Unsure;
-    }
-    by
 }

@@ -11,16 +11,11 @@
 //! ```
 //!
 //! ```text
-//!  ring ─ gate (every word, 32 phases at once) ─ bits behind a hit? ─ preamble score ─ demodulation (four phases) ─ parity ─ RawFrame
+//!  ring ─ gate (bits behind this word?) ─ preamble (at which of 32 phases?) ─ trial (four phases exactly, then repair) ─ RawFrame
+//!                                       └ none, but strong bits ─ headless
 //! ```
 //!
-//! Not here: error correction (`RawFrame::repaired` keeps its place), arrival times finer than a sample, signal levels, and what
-//! the frame says (`mode-s`).
-//!
-//! Budget on the Cortex-M0+ at 120 MHz, where a word lasts 480 cycles, as the twin counts it on the strong recording of one aircraft (1 760 frames and
-//! 70 000 gate hits a second): the gate 162 cycles a word, the search for bits behind a hit 290, a candidate that has them 4 200 with all its phases and
-//! their parity. In all 67 % of the core; 90 % on the dense clip whose
-//! noise crosses the threshold half the time, where half of the hits seem to have bits behind them. Memory: ring 8 KiB, addresses heard 4 KiB.
+//! Not here: arrival times finer than a sample, signal levels, and what the frame says (`mode-s`).
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -28,12 +23,17 @@ mod bits;
 mod counters;
 mod demodulator;
 mod gate;
+mod headless;
 mod heard;
+mod plausible;
+mod preamble;
+mod repair;
 mod ring;
-mod score;
+mod trial;
 
 pub use counters::{Counters, CountersSnapshot};
 pub use demodulator::{Demodulator, LOOKAHEAD_WORDS, RawFrame};
+pub use repair::Flips;
 pub use ring::{RING_WORDS, SampleRing};
 
 /// System clock cycles (120 MHz) a sample (8 MHz).

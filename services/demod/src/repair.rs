@@ -1,0 +1,266 @@
+//! Repair: which of the least certain bits, flipped, make the parity fit?
+//!
+//! The parity is linear. A wrong bit adds its own syndrome to the residual, whatever the other bits are, so a frame with wrong bits `a` and `b` has the
+//! residual `S(a) ^ S(b)`, where the right one has 0 (DF11, 17, 18) or the address (address parity).
+//!
+//! ```text
+//!   residual ─ S(a) = 0?                     10 trials     at most two of the ten least certain bits
+//!            ─ S(a) ^ S(b) = 0?              45 trials
+//!            ─ S(a) = an address heard?      10 trials     address parity: at most one
+//! ```
+//! Each trial fits by chance once in 2^24 (address parity: once for every address heard), so trials are counted, and what fits must come from an
+//! address heard exactly within the last minute. The bits of DF are never flipped: they decide the length and the rule.
+//!
+//! Any five wrong bits or fewer of 112 are seen by this code (distance 6), so two patterns of at most two bits never share a residual.
+
+use crate::bits;
+use crate::heard::Heard;
+use crate::ring::Aligned;
+use mode_s::crc24::GENERATOR;
+use mode_s::frame::LONG_BYTES;
+
+/// Least certain bits that may be flipped.
+const CANDIDATES: usize = 10;
+/// Bits of DF.
+const DF_BITS: u8 = 5;
+/// Bits of a long frame.
+const LONG_BITS: usize = LONG_BYTES * 8;
+
+/// What each bit of a long frame adds to the residual. A short frame's bit `n` is a long one's bit `n + 56`.
+static SYNDROMES: [u32; LONG_BITS] = syndromes();
+
+const fn syndromes() -> [u32; LONG_BITS] {
+    let mut syndromes = [0; LONG_BITS];
+    let mut syndrome = 1;
+    let mut bit = LONG_BITS;
+    while bit > 0 {
+        bit -= 1;
+        syndromes[bit] = syndrome;
+        syndrome <<= 1;
+        if syndrome & 0x100_0000 != 0 {
+            syndrome ^= 0x100_0000 | GENERATOR;
+        }
+    }
+    syndromes
+}
+
+/// The bits that were flipped, at most two, in the order of their certainty.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Flips {
+    bits: [u8; 2],
+    count: u8,
+}
+
+impl Flips {
+    /// No bit was flipped.
+    pub const NONE: Self = Self {
+        bits: [0; 2],
+        count: 0,
+    };
+
+    /// How many.
+    pub const fn count(self) -> u8 {
+        self.count
+    }
+
+    /// Flips them in the bytes of a frame: repairs it, or takes the repair back.
+    pub fn apply(self, bytes: &mut [u8]) {
+        for &bit in self.bits.iter().take(usize::from(self.count)) {
+            if let Some(byte) = bytes.get_mut(usize::from(bit >> 3)) {
+                *byte ^= 0x80 >> (bit & 7);
+            }
+        }
+    }
+}
+
+/// The ten least certain bits of a frame, the least certain first.
+pub(crate) struct Weakest {
+    bits: [u8; CANDIDATES],
+    syndromes: [u32; CANDIDATES],
+}
+
+impl Weakest {
+    /// Of the frame whose first bit `samples` stands at.
+    #[inline(never)]
+    pub(crate) fn of(samples: Aligned, bytes: usize) -> Self {
+        let mut samples = samples;
+        let mut weakest = [(u8::MAX, 0u8); CANDIDATES];
+        let mut bit = 0u8;
+        for _ in 0..bytes * 2 {
+            let margins = bits::margins(samples.take());
+            for shift in [24, 16, 8, 0] {
+                let certainty = (margins >> shift & 0xFF).abs_diff(bits::TIE) as u8;
+                if bit >= DF_BITS && certainty < weakest[CANDIDATES - 1].0 {
+                    insert(&mut weakest, certainty, bit);
+                }
+                bit += 1;
+            }
+        }
+        let first = LONG_BITS - bytes * 8;
+        Self {
+            bits: weakest.map(|(_, bit)| bit),
+            syndromes: weakest.map(|(_, bit)| {
+                SYNDROMES
+                    .get(first + usize::from(bit))
+                    .copied()
+                    .unwrap_or(0)
+            }),
+        }
+    }
+
+    /// At most two flips that leave the residual 0, and the trials it took.
+    #[inline(never)]
+    pub(crate) fn explain(&self, residual: u32) -> (Option<Flips>, u32) {
+        let mut trials = 0;
+        for (a, &syndrome) in self.syndromes.iter().enumerate() {
+            trials += 1;
+            if residual == syndrome {
+                return (Some(self.flips(a, None)), trials);
+            }
+        }
+        for (a, &first) in self.syndromes.iter().enumerate() {
+            let rest = residual ^ first;
+            for (b, &second) in self.syndromes.iter().enumerate().skip(a + 1) {
+                trials += 1;
+                if rest == second {
+                    return (Some(self.flips(a, Some(b))), trials);
+                }
+            }
+        }
+        (None, trials)
+    }
+
+    /// One flip that leaves an address heard, that address, and the trials it took.
+    #[inline(never)]
+    pub(crate) fn explain_by_address(
+        &self,
+        residual: u32,
+        heard: &Heard,
+    ) -> (Option<(Flips, u32)>, u32) {
+        let mut trials = 0;
+        for (a, &syndrome) in self.syndromes.iter().enumerate() {
+            trials += 1;
+            let address = residual ^ syndrome;
+            if heard.knows(address) {
+                return (Some((self.flips(a, None), address)), trials);
+            }
+        }
+        (None, trials)
+    }
+
+    fn flips(&self, a: usize, b: Option<usize>) -> Flips {
+        let bit = |index: usize| self.bits.get(index).copied().unwrap_or(0);
+        Flips {
+            bits: [bit(a), b.map_or(0, bit)],
+            count: if b.is_some() { 2 } else { 1 },
+        }
+    }
+}
+
+/// Puts a bit in its place among the weakest and drops the last.
+#[inline(always)]
+fn insert(weakest: &mut [(u8, u8); CANDIDATES], certainty: u8, bit: u8) {
+    let mut place = CANDIDATES - 1;
+    while place > 0 && certainty < weakest[place - 1].0 {
+        weakest[place] = weakest[place - 1];
+        place -= 1;
+    }
+    weakest[place] = (certainty, bit);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ring::SampleRing;
+    use mode_s::crc24;
+
+    #[test]
+    fn a_syndrome_is_the_residual_of_its_bit_alone() {
+        for bit in 0..LONG_BITS {
+            let mut long = [0u8; LONG_BYTES];
+            long[bit / 8] = 0x80 >> (bit % 8);
+            assert_eq!(SYNDROMES[bit], crc24::residual(&long), "bit {bit}");
+            if bit >= 56 {
+                assert_eq!(SYNDROMES[bit], crc24::residual(&long[7..]), "bit {bit}");
+            }
+        }
+    }
+
+    /// A ring with these bits, in which each bit of `weak` has lost so many of its eight samples.
+    fn ring(bytes: &[u8], weak: &[(usize, u32)]) -> SampleRing {
+        let ring = SampleRing::new();
+        for (index, byte) in (0..).zip(bytes.iter().flat_map(|b| [b >> 4, b & 15])) {
+            let word = (0..4).fold(0, |word, bit| {
+                let number = index as usize * 4 + bit;
+                let lost = weak.iter().find(|(at, _)| *at == number).map_or(0, |w| w.1);
+                let half = 0xF << lost & 0xF;
+                let pulse = if byte >> (3 - bit) & 1 != 0 {
+                    half << 4
+                } else {
+                    half
+                };
+                word << 8 | pulse
+            });
+            ring.store(index, word);
+        }
+        ring
+    }
+
+    const DF17: [u8; LONG_BYTES] = [
+        0x8D, 0x4C, 0xA7, 0xE8, 0x58, 0xB9, 0x83, 0x82, 0x06, 0xBA, 0x42, 0x2B, 0xBD, 0x7B,
+    ];
+
+    #[test]
+    fn the_least_certain_bits_come_first_and_never_those_of_df() {
+        // Bits 90 and 17 are zeros (pulse in the later half): the more samples are lost, the less certain.
+        let weak = [(90, 3), (17, 4), (0, 4)];
+        let ring = ring(&DF17, &weak);
+        let weakest = Weakest::of(Aligned::new(&ring, 0, 0), LONG_BYTES);
+        assert_eq!(weakest.bits[..2], [17, 90]);
+        assert!(weakest.bits.iter().all(|&bit| bit >= DF_BITS));
+    }
+
+    #[test]
+    fn one_or_two_wrong_bits_among_the_weakest_are_found_and_three_are_not() {
+        let weak = [(90, 4), (17, 4), (33, 4)];
+        let ring = ring(&DF17, &weak);
+        let weakest = Weakest::of(Aligned::new(&ring, 0, 0), LONG_BYTES);
+        for wrong in [&[17][..], &[90, 17], &[33, 90]] {
+            let mut bytes = DF17;
+            wrong
+                .iter()
+                .for_each(|bit| bytes[bit / 8] ^= 0x80 >> (bit % 8));
+            let (flips, trials) = weakest.explain(crc24::residual(&bytes));
+            let flips = flips.expect("found");
+            assert_eq!(usize::from(flips.count()), wrong.len());
+            assert!(trials <= 55);
+            flips.apply(&mut bytes);
+            assert_eq!(bytes, DF17);
+        }
+        let mut bytes = DF17;
+        [17, 33, 90]
+            .iter()
+            .for_each(|bit| bytes[bit / 8] ^= 0x80 >> (bit % 8));
+        assert_eq!(weakest.explain(crc24::residual(&bytes)), (None, 55));
+    }
+
+    #[test]
+    fn address_parity_takes_one_flip_and_an_address_heard() {
+        let mut heard = Heard::new();
+        heard.note(0x4D2023);
+        let mut short = [0x20, 0x00, 0x06, 0xA2, 0, 0, 0];
+        let parity = crc24::remainder(&short[..4]) ^ 0x4D2023;
+        short[4..].copy_from_slice(&parity.to_be_bytes()[1..]);
+        let ring = ring(&short, &[(20, 4)]);
+        let weakest = Weakest::of(Aligned::new(&ring, 0, 0), 7);
+        short[2] ^= 0x08;
+        let residual = crc24::residual(&short);
+        let (found, _) = weakest.explain_by_address(residual, &heard);
+        let (flips, address) = found.expect("found");
+        assert_eq!((flips.count(), address), (1, 0x4D2023));
+        assert_eq!(
+            weakest.explain_by_address(residual ^ 0x100, &heard),
+            (None, 10)
+        );
+    }
+}

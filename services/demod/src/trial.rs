@@ -1,0 +1,274 @@
+//! The trial of a candidate: every phase as it is, then, if none is proved, the most certain one with repair.
+//!
+//! ```text
+//!   phase ─ no such DF ───────────────────────────► BadFormat
+//!         ─ the first 16 bits are too unsure ─────► NoBits
+//!         ─ DF11 17 18 19 ─ residual 0 ───────────► Exact                 ends the search
+//!                         ─ DF11, a code, heard ──► Interrogator
+//!                         ─ else ─────────────────► BadParity  ───┐
+//!         ─ address parity ─ heard, sure ─────────► Address       │ the most certain phase of these:
+//!                          ─ heard, unsure ───────► Unsure        │   fits by flips, address heard ─────► Repaired
+//!                          ─ heard, no such field ► Implausible   │   (address parity: sure, plausible)
+//!                          ─ else ────────────────► UnknownAddress┘   fits, not heard ────────────────────► UnknownAddress
+//! ```
+//! Repair comes after all phases, because a repair at one phase would mask an exact copy at the next. A frame that only a known address vouches for
+//! waits for all phases, too: an exact one is worth more.
+//!
+//! Every check of a parity is counted in [`Counters`]: each fits by chance once in 2^24 (an address: once for every address heard).
+
+use crate::SAMPLES_PER_WORD;
+use crate::bits;
+use crate::counters::{Counters, add};
+use crate::heard::Heard;
+use crate::plausible;
+use crate::preamble::mismatches;
+use crate::repair::{Flips, Weakest};
+use crate::ring::{Aligned, SampleRing};
+use mode_s::crc24;
+use mode_s::frame::{LONG_BYTES, SHORT_BYTES};
+use mode_s::parity::HIGHEST_INTERROGATOR_CODE;
+
+/// Most mismatches of a preamble that is worth demodulating. White noise that crosses the threshold all the time and passes gate and taps has fewer one time in two.
+const MOST_MISMATCHES: u32 = 12;
+
+/// Least certainty of the first 16 bits, of 64, below which there is nothing to demodulate. Noise has a mean of 18.
+const LEAST_CERTAINTY: u32 = 22;
+
+/// Least mean certainty of a bit, in quarters of a sample count (4 would be every sample of both halves right), of a frame whose only proof is
+/// a known address. Noise has a mean near 1.1.
+const LEAST_CERTAINTY_QUARTERS: u32 = 7;
+
+/// Phases tried around a candidate, the likeliest first: the first hit is early, most frames start a sample or two behind it.
+const PHASES: [i32; 4] = [1, 2, 0, -1];
+
+/// What became of a candidate. In rising order of worth: the best of its phases is the candidate's.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) enum Outcome {
+    NoBits,
+    BadFormat,
+    BadParity,
+    UnknownAddress,
+    Unsure,
+    Implausible,
+    RepairedAddress,
+    Repaired,
+    Address,
+    Interrogator,
+    Exact,
+}
+
+impl Outcome {
+    /// Whether a frame came of it.
+    pub(crate) fn is_accepted(self) -> bool {
+        self >= Outcome::RepairedAddress
+    }
+
+    /// Whether other bits than those demodulated could still be a frame.
+    fn may_be_repaired(self) -> bool {
+        matches!(
+            self,
+            Outcome::BadParity | Outcome::UnknownAddress | Outcome::Unsure | Outcome::Implausible
+        )
+    }
+}
+
+/// A candidate's best phase.
+#[derive(Clone, Copy)]
+pub(crate) struct Tried {
+    pub(crate) outcome: Outcome,
+    /// Samples from the candidate's first hit to this phase.
+    pub(crate) phase: i32,
+    /// What was repaired.
+    pub(crate) flips: Flips,
+    /// The bits, repaired.
+    pub(crate) bytes: [u8; LONG_BYTES],
+}
+
+/// The samples from `sample` of `word` on; `sample` may be up to a word before it (wrapped).
+#[inline(always)]
+pub(crate) fn from_sample(ring: &SampleRing, word: u32, sample: u32) -> Aligned<'_> {
+    Aligned::new(
+        ring,
+        word.wrapping_sub(1),
+        sample.wrapping_add(SAMPLES_PER_WORD),
+    )
+}
+
+/// The bytes that the downlink format says were sent.
+#[inline(always)]
+pub(crate) fn received(bytes: &[u8; LONG_BYTES]) -> &[u8] {
+    if bytes[0] & 0x80 != 0 {
+        bytes
+    } else {
+        bytes.first_chunk::<SHORT_BYTES>().map_or(bytes, |b| b)
+    }
+}
+
+/// The best that a candidate and its neighbours give. `None` when no phase looks like a preamble.
+#[inline(never)]
+pub(crate) fn try_phases(
+    ring: &SampleRing,
+    word: u32,
+    sample: u32,
+    heard: &Heard,
+    counters: &Counters,
+) -> Option<Tried> {
+    let mut best: Option<Tried> = None;
+    let mut repairable = (0, None);
+    let mut bytes = [0; LONG_BYTES];
+    for phase in PHASES {
+        let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
+        if mismatches(&mut samples) > MOST_MISMATCHES {
+            continue;
+        }
+        let outcome = demodulate(samples, heard, counters, &mut bytes);
+        if outcome.may_be_repaired() {
+            let certainty = certainty(samples, received(&bytes).len());
+            if certainty > repairable.0 {
+                repairable = (certainty, Some(phase));
+            }
+        }
+        if best.is_none_or(|so_far| outcome > so_far.outcome) {
+            let flips = Flips::NONE;
+            best = Some(Tried {
+                outcome,
+                phase,
+                flips,
+                bytes,
+            });
+        }
+        if outcome == Outcome::Exact {
+            return best;
+        }
+    }
+    if let (Some(tried), (_, Some(phase))) = (&mut best, repairable)
+        && !tried.outcome.is_accepted()
+    {
+        let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
+        samples.take();
+        samples.take();
+        repair(samples, phase, heard, counters, tried);
+    }
+    best
+}
+
+/// Demodulates one phase and judges it. `from` stands at the first bit.
+#[inline(never)]
+fn demodulate(
+    from: Aligned,
+    heard: &Heard,
+    counters: &Counters,
+    bytes: &mut [u8; LONG_BYTES],
+) -> Outcome {
+    let mut samples = from;
+    let (first, sure_of_first) = bits::byte_and_certainty(&mut samples);
+    // DF 0, 4, 5, 11, 16 to 21 and 24 to 31 exist.
+    const FORMATS: u32 = 0xFF3F_0831;
+    if FORMATS >> (first >> 3) & 1 == 0 {
+        return Outcome::BadFormat;
+    }
+    let (second, sure_of_second) = bits::byte_and_certainty(&mut samples);
+    if sure_of_first + sure_of_second < LEAST_CERTAINTY {
+        return Outcome::NoBits;
+    }
+    bytes[0] = first;
+    bytes[1] = second;
+    let length = received(bytes).len();
+    for byte in bytes.iter_mut().take(length).skip(2) {
+        *byte = bits::byte(&mut samples);
+    }
+    let residual = crc24::residual(received(bytes));
+    let (vouched, by) = match first >> 3 {
+        11 | 17..=19 => {
+            add(&counters.trials_exact, 1);
+            match residual {
+                0 => return Outcome::Exact,
+                1..=HIGHEST_INTERROGATOR_CODE if first >> 3 == 11 => {
+                    (aa(bytes), Outcome::Interrogator)
+                }
+                _ => return Outcome::BadParity,
+            }
+        }
+        _ => {
+            add(&counters.trials_address, 1);
+            (residual, Outcome::Address)
+        }
+    };
+    if !heard.knows(vouched) {
+        return Outcome::UnknownAddress;
+    }
+    if !is_sure(from, length) {
+        return Outcome::Unsure;
+    }
+    if by == Outcome::Address && !plausible::fields(received(bytes)) {
+        return Outcome::Implausible;
+    }
+    by
+}
+
+/// Repairs the most certain phase, if its parity can be explained. `from` stands at its first bit.
+#[inline(never)]
+fn repair(from: Aligned, phase: i32, heard: &Heard, counters: &Counters, tried: &mut Tried) {
+    let mut samples = from;
+    let mut bytes = [0; LONG_BYTES];
+    bytes[0] = bits::byte(&mut samples);
+    let length = received(&bytes).len();
+    for byte in bytes.iter_mut().take(length).skip(1) {
+        *byte = bits::byte(&mut samples);
+    }
+    let residual = crc24::residual(received(&bytes));
+    let weakest = Weakest::of(from, length);
+    let (outcome, flips) = match bytes[0] >> 3 {
+        11 | 17 | 18 => {
+            let (flips, trials) = weakest.explain(residual);
+            add(&counters.trials_repair, trials);
+            let Some(flips) = flips else { return };
+            flips.apply(&mut bytes);
+            add(&counters.repairs_fitting, 1);
+            if !heard.knows(aa(&bytes)) {
+                return;
+            }
+            (Outcome::Repaired, flips)
+        }
+        19 => return,
+        _ => {
+            if !is_sure(from, length) {
+                return;
+            }
+            let (found, trials) = weakest.explain_by_address(residual, heard);
+            add(&counters.trials_address_repair, trials);
+            let Some((flips, _)) = found else { return };
+            flips.apply(&mut bytes);
+            if !plausible::fields(received(&bytes)) {
+                return;
+            }
+            (Outcome::RepairedAddress, flips)
+        }
+    };
+    *tried = Tried {
+        outcome,
+        phase,
+        flips,
+        bytes,
+    };
+}
+
+/// The address in AA.
+#[inline(always)]
+fn aa(bytes: &[u8; LONG_BYTES]) -> u32 {
+    u32::from_be_bytes([0, bytes[1], bytes[2], bytes[3]])
+}
+
+/// The sum of the certainties of a frame's bits, 0 to 4 each.
+#[inline(never)]
+fn certainty(from: Aligned, bytes: usize) -> u32 {
+    let mut samples = from;
+    (0..bytes * 2)
+        .map(|_| bits::certainty(samples.take()))
+        .sum()
+}
+
+/// Whether a frame's bits are sure enough to be believed by a known address alone.
+fn is_sure(from: Aligned, bytes: usize) -> bool {
+    certainty(from, bytes) >= bytes as u32 * 2 * LEAST_CERTAINTY_QUARTERS
+}
