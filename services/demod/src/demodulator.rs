@@ -10,10 +10,10 @@
 //! A refused candidate blocks nothing: a stronger frame that starts inside a weaker one is tried when its word comes. Behind an accepted frame the walk goes on
 //! 12 µs before its end, because a stronger preamble may cover the last bits of a frame whose parity still holds. What starts earlier inside it would have destroyed it.
 //!
-//! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 144 µs.
+//! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 152 µs.
 
 use crate::counters::{Counters, add};
-use crate::gate::{Gate, Pairs, REACH};
+use crate::gate::{Gate, Pairs, REACH, STEER_WORDS};
 use crate::headless::{self, STRONG, WAIT_WORDS};
 use crate::heard::Heard;
 use crate::preamble::{self, mismatches, ones};
@@ -25,8 +25,8 @@ use mode_s::Frame;
 use mode_s::frame::LONG_BYTES;
 
 /// Words that must follow a word before it is looked at: 64 + 896 samples of a long frame, its start anywhere in the word, two phases more; or a
-/// frame without preamble that starts up to four words later.
-pub const LOOKAHEAD_WORDS: u32 = 36;
+/// frame without preamble that starts up to seven words later.
+pub const LOOKAHEAD_WORDS: u32 = 38;
 const _: () = assert!(LOOKAHEAD_WORDS > REACH);
 
 /// Words the writer may be ahead before the oldest are given up. The rest of the ring is what the writer may fill while a call works off this backlog.
@@ -133,18 +133,31 @@ impl Demodulator {
     /// Goes to the next word behind which bits stand: `self.next`. `None` when no more can be looked at.
     #[inline(always)]
     fn find(&mut self, ring: &SampleRing, written: u64, counters: &Counters) -> Option<Pairs> {
-        let ready = written.saturating_sub(self.next + u64::from(LOOKAHEAD_WORDS)) as u32;
-        let first = self.next as u32;
-        let found = self.gate.find(ring, first, first.wrapping_add(ready));
-        let passed = found.map_or(ready, |(word, _)| word.wrapping_sub(first));
-        self.pass(passed, counters);
-        found.map(|(_, pairs)| pairs)
+        loop {
+            let ready = written.saturating_sub(self.next + u64::from(LOOKAHEAD_WORDS)) as u32;
+            if ready == 0 {
+                return None;
+            }
+            let first = self.next as u32;
+            // Up to where the gate is steered next.
+            let ready = ready.min(STEER_WORDS - first % STEER_WORDS);
+            let found = self.gate.find(ring, first, first.wrapping_add(ready));
+            let passed = found.map_or(ready, |(word, _)| word.wrapping_sub(first));
+            self.pass(passed, counters);
+            if let Some((_, pairs)) = found {
+                return Some(pairs);
+            }
+        }
     }
 
     /// Steps on by so many words.
     #[inline(always)]
     fn pass(&mut self, words: u32, counters: &Counters) {
+        let before = self.next as u32;
         self.next += u64::from(words);
+        if before / STEER_WORDS != self.next as u32 / STEER_WORDS {
+            self.gate.steer();
+        }
         add(&counters.words, words);
     }
 
@@ -158,7 +171,7 @@ impl Demodulator {
     ) -> Option<RawFrame> {
         add(&counters.with_bits, 1);
         let word = self.next as u32;
-        let hits = preamble::hits(ring, word) & pairs.phases();
+        let hits = preamble::hits(ring, word) & self.gate.phases(pairs);
         let frame = if hits != 0 {
             self.try_hits(ring, hits, counters)
         } else {
@@ -236,17 +249,22 @@ impl Demodulator {
         }
         add(&counters.candidates, 1);
         add(&counters.demodulated, 1);
-        // Two words before those that showed the bits: a start in either is found.
-        let from = self.next.saturating_sub(u64::from(WAIT_WORDS + 1));
-        let Some(found) = headless::search(ring, from as u32, pair, counters) else {
+        // The bits shown began three words behind the word that showed them, or a little before.
+        let from = self.next.saturating_sub(u64::from(WAIT_WORDS + 2));
+        let Some(found) = headless::search(ring, from as u32, pair, &self.heard, counters) else {
             add(&counters.no_start, 1);
             return None;
         };
+        let outcome = if found.residual == 0 {
+            Outcome::Exact
+        } else {
+            Outcome::Interrogator
+        };
         add(&counters.headless, 1);
-        count(Outcome::Exact, counters);
+        count(outcome, counters);
         let first_bit = from * u64::from(SAMPLES_PER_WORD) + u64::from(found.first_bit);
         let tried = Tried {
-            outcome: Outcome::Exact,
+            outcome,
             phase: 0,
             flips: Flips::NONE,
             bytes: found.bytes,

@@ -14,6 +14,10 @@
 //! It comes before the preamble is looked at, because it costs a third of that and noise passes it less often: white noise has 28 of 56 (standard deviation 3.5 to 4.9),
 //! frames whose bits can be decoded have 44 and more. It keeps a frame whose preamble lies under another transmission, too.
 //!
+//! What passes is looked at more closely, which takes time. So the threshold is steered by the share of words that pass: it rises where noise crosses the comparator all
+//! the time, and falls where the air is quiet, down to where a slicer has eaten half of every pulse. The steps stand at fixed words of the stream, so the same samples always
+//! give the same threshold.
+//!
 //! The counts are kept four bits wide, eight a register: two of a word fit seven times.
 
 use crate::ring::SampleRing;
@@ -25,8 +29,15 @@ const FIRST: u32 = 3;
 /// Words read from the word in question on: the last one's second halves reach into the word behind it.
 pub(crate) const REACH: u32 = FIRST + WORDS + 1;
 
-/// Opposed places, of 56, from which on a word is worth a look at its preamble.
-pub(crate) const LEAST_OPPOSED: u32 = 38;
+/// Words between two steps of the threshold.
+pub(crate) const STEER_WORDS: u32 = 64;
+/// Words of so many that may pass before the threshold rises: a word that passes costs as much as five that do not.
+const PASSING: u32 = 6;
+/// Threshold steps a word too many or too few, in 1/256 of a place: up in milliseconds, down in tens of them.
+const STEP: u32 = 4;
+/// The threshold's limits, in places of 56, and where it starts.
+const LOWEST: u32 = 26;
+const HIGHEST: u32 = 44;
 
 /// Opposed places of a word: two bits a pair of samples, in two registers of eight nibbles.
 #[derive(Clone, Copy)]
@@ -76,11 +87,11 @@ impl Pairs {
 
     /// The phases (bit 31 is sample 0 of a word) at which a preamble would have one of the passing pairs inside its first halves: a pair that begins at
     /// sample `p` of a byte suits starts at `p`, `p - 1` and `p - 2`.
-    pub(crate) fn phases(self) -> u32 {
+    fn phases(self, least: u32) -> u32 {
         const SUITED: [u32; 4] = [0b1000_0011, 0b1110_0000, 0b0011_1000, 0b0000_1110];
         let mut phases = 0;
         for (suited, &opposed) in SUITED.iter().zip(&self.0) {
-            if opposed >= LEAST_OPPOSED {
+            if opposed >= least {
                 phases |= suited;
             }
         }
@@ -97,6 +108,10 @@ pub(crate) struct Gate {
     held: u32,
     /// The word in question.
     at: u32,
+    /// The threshold, in 1/256 of a place.
+    threshold: u32,
+    /// Words that passed since the last step of it.
+    passed: u32,
 }
 
 impl Gate {
@@ -107,7 +122,28 @@ impl Gate {
             words: [Opposed::NONE; 8],
             held: 0,
             at: u32::MAX,
+            threshold: LOWEST << 8,
+            passed: 0,
         }
+    }
+
+    /// Opposed places, of 56, from which on a word passes.
+    #[inline(always)]
+    fn least(&self) -> u32 {
+        self.threshold >> 8
+    }
+
+    /// The phases at which a preamble would suit one of the pairs that pass.
+    #[inline(always)]
+    pub(crate) fn phases(&self, pairs: Pairs) -> u32 {
+        pairs.phases(self.least())
+    }
+
+    /// Moves the threshold; to be called once every [`STEER_WORDS`] words of the stream.
+    pub(crate) fn steer(&mut self) {
+        let moved = self.threshold + STEP * self.passed - STEP * PASSING;
+        self.threshold = moved.clamp(LOWEST << 8, HIGHEST << 8);
+        self.passed = 0;
     }
 
     /// Goes to a word.
@@ -146,10 +182,12 @@ impl Gate {
         if self.at != from {
             self.start(ring, from);
         }
+        let least = self.least();
         loop {
             let Opposed { even, odd } = self.sum;
             let pairs = [total(even >> 4), total(odd >> 4), total(even), total(odd)];
-            if pairs.iter().any(|&opposed| opposed >= LEAST_OPPOSED) {
+            if pairs.iter().any(|&opposed| opposed >= least) {
+                self.passed += 1;
                 return Some((self.at, Pairs(pairs)));
             }
             if self.at.wrapping_add(1) == end {
@@ -195,13 +233,13 @@ mod tests {
         let (mut gate, mut found, mut from) = (Gate::new(), 0, 20);
         while let Some((at, pairs)) = gate.find(&ring, from, 380) {
             for skipped in from..at {
-                assert!((0..4).all(|pair| counted(&ring, skipped, pair) < LEAST_OPPOSED));
+                assert!((0..4).all(|pair| counted(&ring, skipped, pair) < LOWEST));
             }
             let expected = [0, 1, 2, 3].map(|pair| counted(&ring, at, pair));
             assert_eq!(pairs, Pairs(expected), "word {at}");
             found += 1;
             // Now and then a jump, which starts the sums anew.
-            from = at + if found % 9 == 0 { 12 } else { 1 };
+            from = (at + if found % 9 == 0 { 12 } else { 1 }).min(380);
         }
         assert!(found > 50, "{found}");
     }
@@ -214,7 +252,7 @@ mod tests {
                 ring.store(index, 0xF00F_0FF0u32.rotate_right(start));
             }
             let (_, pairs) = Gate::new().find(&ring, 0, 1).expect("bits are there");
-            assert_ne!(pairs.phases() & 1 << (31 - start), 0, "start {start}");
+            assert_ne!(pairs.phases(LOWEST) & 1 << (31 - start), 0, "start {start}");
         }
         let ring = SampleRing::new();
         assert_eq!(Gate::new().find(&ring, 0, 30), None);
