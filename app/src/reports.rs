@@ -45,7 +45,7 @@ impl Reports {
         self.burst = None;
     }
 
-    /// A frame was accepted.
+    /// A frame was accepted: its bits as received.
     pub fn frame<O: Outlet>(&mut self, port: &mut Port<O>, raw_frame: &RawFrame) {
         let mut out = [0; if raw::MAX_HEX > beast::MAX_MESSAGE {
             raw::MAX_HEX
@@ -54,8 +54,10 @@ impl Reports {
         }];
         let made = match self.protocol {
             Protocol::None | Protocol::Csbee => return,
-            Protocol::Beast => beast::frame(&raw_frame.frame, raw_frame.arrival, None, &mut out),
-            Protocol::Raw => raw::hex(&raw_frame.frame, &mut out),
+            Protocol::Beast => {
+                beast::frame(&raw_frame.received(), raw_frame.arrival, None, &mut out)
+            }
+            Protocol::Raw => raw::hex(&raw_frame.received(), &mut out),
         };
         send(port, &out, made);
     }

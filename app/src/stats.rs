@@ -4,6 +4,7 @@
 //!   +STATS=DEVICE,uptime_s=..,start=..,slot=..,image=..   why this start happened, what runs
 //!   +STATS=CAPTURE,blocks=..,words=..,..        128 us a block
 //!   +STATS=DEMOD,words=..,candidates=..,..      candidates = one outcome each, see services/demod
+//!   +STATS=TRIALS,trials_exact=..,..            parity checks by kind: what chance had
 //!   +STATS=QUEUE,offered=..,queued=..,dropped=..,waiting=..
 //!   +STATS=DECODE,offered=..,exact=..,..
 //!   +STATS=TRACKER,offered=..,born=..,..        see services/tracker
@@ -14,7 +15,7 @@
 //!
 //! | sum |
 //! |---|
-//! | DEMOD accepted_exact + accepted_interrogator + accepted_address = QUEUE offered |
+//! | DEMOD the five accepted = QUEUE offered |
 //! | QUEUE offered = queued + dropped |
 //! | QUEUE queued = DECODE offered + QUEUE waiting |
 //! | DECODE offered = exact + interrogator + address + broken + unjudged = TRACKER offered |
@@ -64,8 +65,8 @@ pub struct Stats<'a> {
     pub comms_received_lost: u32,
 }
 
-/// Bytes of the longest line: DEMOD, 14 counters of up to ten digits.
-pub const MAX_LINE: usize = 512;
+/// Bytes of the longest line: DEMOD, 21 counters of up to ten digits and their names.
+pub const MAX_LINE: usize = 640;
 
 /// One line without its end.
 pub type Line = heapless::String<MAX_LINE>;
@@ -125,7 +126,9 @@ impl Stats<'_> {
                 ("fifo_overflows", value(&self.capture.fifo_overflows)),
             ],
         ));
-        out(line("DEMOD", &self.demod.snapshot().named()));
+        let demod = self.demod.snapshot();
+        out(line("DEMOD", &demod.stages()));
+        out(line("TRIALS", &demod.trials()));
         out(line(
             "QUEUE",
             &[

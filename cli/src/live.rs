@@ -333,9 +333,7 @@ fn summary(
     ports: Option<&Ports>,
 ) {
     let count = |stage, name| device::counter(stats, stage, name).unwrap_or(0);
-    let decoded = count("DEMOD", "accepted_exact")
-        + count("DEMOD", "accepted_interrogator")
-        + count("DEMOD", "accepted_address");
+    let decoded = count("QUEUE", "offered");
     let aircraft = match console.aircraft.len() as u64 {
         0 => count("TRACKER", "born"),
         n => n,

@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 mod beast;
+mod completed;
 mod decode;
 mod device;
 mod json;

@@ -9,6 +9,7 @@ use twin::native;
 use twin::source::PRE_ROLL_PS;
 
 use crate::beast;
+use crate::completed::Completed;
 use crate::output::{self, Form, Heard, Printer};
 use crate::{Failure, device, radio};
 
@@ -89,12 +90,17 @@ fn by_native(
     if let Some(error) = failed {
         return Err(error.into());
     }
-    let fields: Vec<String> = counters
-        .named()
-        .iter()
-        .map(|(name, n)| format!("{name}={n}"))
-        .collect();
-    Ok(format!("+STATS=DEMOD,{}\n", fields.join(",")))
+    let fields = |named: &[(&str, u32)]| -> Vec<String> {
+        named
+            .iter()
+            .map(|(name, n)| format!("{name}={n}"))
+            .collect()
+    };
+    Ok(format!(
+        "+STATS=DEMOD,{}\n+STATS=TRIALS,{}\n",
+        fields(&counters.stages()).join(","),
+        fields(&counters.trials()).join(",")
+    ))
 }
 
 fn by_twin(
@@ -116,6 +122,7 @@ fn by_twin(
     let profiling = device::profile(&mut board, matches);
     let start = output::start_count(playback.start_tick, PRE_ROLL_PS);
     let mut reader = beast::Reader::default();
+    let mut completed = Completed::default();
     let mut left = TAIL_MS;
     let mut tables = None;
     while left > 0 {
@@ -133,10 +140,11 @@ fn by_twin(
             Form::Beast => printer.bytes(&comms)?,
             Form::Hex | Form::Json => {
                 for message in reader.read(&comms) {
+                    let (frame, repaired) = completed.complete(&message.frame);
                     printer.frame(&Heard {
                         count: message.stamp as i64 - start,
-                        frame: message.frame,
-                        repaired: 0,
+                        frame,
+                        repaired,
                     })?;
                 }
             }

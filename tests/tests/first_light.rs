@@ -121,6 +121,8 @@ fn the_counters_of_every_stage_balance() {
             "accepted_exact",
             "accepted_interrogator",
             "accepted_address",
+            "accepted_repaired",
+            "accepted_address_repaired",
         ],
     );
     let judged = sum(
@@ -131,6 +133,8 @@ fn the_counters_of_every_stage_balance() {
             "bad_parity",
             "unknown_address",
             "unsure",
+            "implausible",
+            "no_start",
         ],
     );
     assert_eq!(count("DEMOD", "demodulated"), judged + accepted);

@@ -44,20 +44,19 @@ pub(crate) fn byte(samples: &mut Aligned) -> u8 {
     (high << 4 | low) as u8
 }
 
-/// One byte from 64 samples, and how sure its eight bits are, 0 to 32.
+/// One byte from 64 samples, and how sure its eight bits are: the sum of their absolute count differences, 0 to 32.
 #[inline(always)]
 pub(crate) fn byte_and_certainty(samples: &mut Aligned) -> (u8, u32) {
-    let first = samples.take();
-    let second = samples.take();
-    (
-        (nibble(first) << 4 | nibble(second)) as u8,
-        certainty(first) + certainty(second),
-    )
+    let (first, second) = (samples.take(), samples.take());
+    let (high, low) = (nibble(first), nibble(second));
+    // Two words' differences are at most 8 a byte, so they are added before the bytes are.
+    let sure = (differences(first) + differences(second)).wrapping_mul(0x0101_0101) >> 24;
+    ((high << 4 | low) as u8, sure)
 }
 
-/// How sure the four bits of a word are: the sum of the four absolute count differences, 0 to 16.
+/// How sure each of the four bits of a word is: the absolute difference of its halves' ones, 0 to 4, one a byte.
 #[inline(always)]
-pub(crate) fn certainty(samples: u32) -> u32 {
+fn differences(samples: u32) -> u32 {
     let pairs = samples - ((samples >> 1) & 0x5555_5555);
     let nibbles = (pairs & 0x3333_3333) + ((pairs >> 2) & 0x3333_3333);
     let first = (nibbles >> 4) & 0x0F0F_0F0F;
@@ -67,8 +66,7 @@ pub(crate) fn certainty(samples: u32) -> u32 {
     let behind = 0x8080_8080 + second - first;
     let not_negative = (ahead >> 7) & 0x0101_0101;
     let mask = (not_negative << 8).wrapping_sub(not_negative);
-    let differences = (ahead & mask | behind & !mask) & 0x0F0F_0F0F;
-    differences.wrapping_mul(0x0101_0101) >> 24
+    (ahead & mask | behind & !mask) & 0x0F0F_0F0F
 }
 
 #[cfg(test)]
@@ -100,7 +98,7 @@ mod tests {
                 sure += first.abs_diff(second);
             }
             assert_eq!(nibble(samples), bits, "{samples:08x}");
-            assert_eq!(certainty(samples), sure);
+            assert_eq!(differences(samples).wrapping_mul(0x0101_0101) >> 24, sure);
         }
     }
 }

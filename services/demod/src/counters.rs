@@ -20,37 +20,49 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 macro_rules! counters {
-    ($($(#[$doc:meta])* $name:ident,)*) => {
+    (
+        stages: { $($(#[$doc:meta])* $name:ident,)* }
+        trials: { $($(#[$trial_doc:meta])* $trial:ident,)* }
+    ) => {
         /// The counters, shared between the cores.
         #[derive(Debug)]
-        pub struct Counters { $($(#[$doc])* pub $name: AtomicU32,)* }
+        pub struct Counters { $($(#[$doc])* pub $name: AtomicU32,)* $($(#[$trial_doc])* pub $trial: AtomicU32,)* }
 
         /// The counters at one moment.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-        pub struct CountersSnapshot { $($(#[$doc])* pub $name: u32,)* }
+        pub struct CountersSnapshot { $($(#[$doc])* pub $name: u32,)* $($(#[$trial_doc])* pub $trial: u32,)* }
 
         impl Counters {
             /// All zero.
             pub const fn new() -> Self {
-                Self { $($name: AtomicU32::new(0),)* }
+                Self { $($name: AtomicU32::new(0),)* $($trial: AtomicU32::new(0),)* }
             }
 
             /// Reads them all. Taken by another core while the demodulator runs, the sums may be off by what is under way.
             pub fn snapshot(&self) -> CountersSnapshot {
-                CountersSnapshot { $($name: self.$name.load(Ordering::Relaxed),)* }
+                CountersSnapshot {
+                    $($name: self.$name.load(Ordering::Relaxed),)*
+                    $($trial: self.$trial.load(Ordering::Relaxed),)*
+                }
             }
         }
 
         impl CountersSnapshot {
-            /// Every counter with its name.
-            pub fn named(&self) -> [(&'static str, u32); [$(stringify!($name)),*].len()] {
+            /// Every counter of the stages with its name.
+            pub fn stages(&self) -> [(&'static str, u32); [$(stringify!($name)),*].len()] {
                 [$((stringify!($name), self.$name)),*]
+            }
+
+            /// Every count of parity checks with its name.
+            pub fn trials(&self) -> [(&'static str, u32); [$(stringify!($trial)),*].len()] {
+                [$((stringify!($trial), self.$trial)),*]
             }
         }
     };
 }
 
 counters! {
+stages: {
     /// Sample words that passed the gate stage or were stepped over inside an accepted frame.
     words,
     /// Sample words lost because the ring was lapped.
@@ -91,8 +103,10 @@ counters! {
     accepted_repaired,
     /// Accepted: address parity of an address heard lately, one bit repaired.
     accepted_address_repaired,
-    /// Of `accepted_exact`: found without a preamble.
+    /// Of `accepted_exact` and `accepted_interrogator`: found without a preamble.
     headless,
+}
+trials: {
     /// Parities of DF11, 17, 18 and 19 checked as received.
     trials_exact,
     /// Address parities checked as received.
@@ -103,6 +117,7 @@ counters! {
     repairs_fitting,
     /// Address parities checked with a bit flipped.
     trials_address_repair,
+}
 }
 
 impl CountersSnapshot {

@@ -10,10 +10,10 @@
 //! A refused candidate blocks nothing: a stronger frame that starts inside a weaker one is tried when its word comes. Behind an accepted frame the walk goes on
 //! 12 µs before its end, because a stronger preamble may cover the last bits of a frame whose parity still holds. What starts earlier inside it would have destroyed it.
 //!
-//! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 152 µs.
+//! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 160 µs.
 
 use crate::counters::{Counters, add};
-use crate::gate::{Gate, Pairs, REACH, STEER_WORDS};
+use crate::gate::{Gate, Pairs, REACH, STEER_WORDS, STEP_WORDS};
 use crate::headless::{self, STRONG, WAIT_WORDS};
 use crate::heard::Heard;
 use crate::preamble::{self, mismatches, ones};
@@ -26,7 +26,7 @@ use mode_s::frame::LONG_BYTES;
 
 /// Words that must follow a word before it is looked at: 64 + 896 samples of a long frame, its start anywhere in the word, two phases more; or a
 /// frame without preamble that starts up to seven words later.
-pub const LOOKAHEAD_WORDS: u32 = 38;
+pub const LOOKAHEAD_WORDS: u32 = 40;
 const _: () = assert!(LOOKAHEAD_WORDS > REACH);
 
 /// Words the writer may be ahead before the oldest are given up. The rest of the ring is what the writer may fill while a call works off this backlog.
@@ -75,7 +75,7 @@ impl RawFrame {
 
 /// The state between calls.
 pub struct Demodulator {
-    /// The next word to gate, from the start of capture.
+    /// The next word to gate, from the start of capture; even.
     next: u64,
     /// First sample (from the start of capture) that is not behind an accepted frame or a tried candidate.
     free_from: u64,
@@ -124,7 +124,7 @@ impl Demodulator {
     /// The ring was lapped: gives up the oldest half of the ring.
     #[inline(never)]
     fn skip(&mut self, written: u64, counters: &Counters) {
-        let from = written - RING_WORDS as u64 / 2;
+        let from = (written - RING_WORDS as u64 / 2) & !1;
         add(&counters.overruns, 1);
         add(&counters.overrun_words, (from - self.next) as u32);
         self.next = from;
@@ -134,7 +134,7 @@ impl Demodulator {
     #[inline(always)]
     fn find(&mut self, ring: &SampleRing, written: u64, counters: &Counters) -> Option<Pairs> {
         loop {
-            let ready = written.saturating_sub(self.next + u64::from(LOOKAHEAD_WORDS)) as u32;
+            let ready = written.saturating_sub(self.next + u64::from(LOOKAHEAD_WORDS)) as u32 & !1;
             if ready == 0 {
                 return None;
             }
@@ -161,7 +161,7 @@ impl Demodulator {
         add(&counters.words, words);
     }
 
-    /// Looks at the word `self.next`, behind which bits stand, and steps on: behind it, or near the end of the frame it found.
+    /// Looks at the two words from `self.next` on, behind which bits stand, and steps on: behind them, or near the end of the frame it found.
     #[inline(never)]
     fn examine(
         &mut self,
@@ -169,18 +169,22 @@ impl Demodulator {
         pairs: Pairs,
         counters: &Counters,
     ) -> Option<RawFrame> {
-        add(&counters.with_bits, 1);
-        let word = self.next as u32;
-        let hits = preamble::hits(ring, word) & self.gate.phases(pairs);
-        let frame = if hits != 0 {
-            self.try_hits(ring, hits, counters)
-        } else {
-            None
-        };
-        let frame = frame.or_else(|| self.try_without_preamble(ring, word, pairs, counters));
-        let next = self.next + 1;
+        add(&counters.with_bits, STEP_WORDS);
+        let phases = self.gate.phases(pairs);
+        let mut frame = None;
+        for (word, hits) in (self.next..).zip(preamble::hits(ring, self.next as u32)) {
+            let hits = hits & phases;
+            if hits != 0 {
+                frame = self.try_hits(ring, word, hits, counters);
+                if frame.is_some() {
+                    break;
+                }
+            }
+        }
+        let frame = frame.or_else(|| self.try_without_preamble(ring, pairs, counters));
+        let next = self.next + u64::from(STEP_WORDS);
         let behind = if frame.is_some() {
-            (self.free_from / u64::from(SAMPLES_PER_WORD)).max(next)
+            (self.free_from / u64::from(SAMPLES_PER_WORD) & !1).max(next)
         } else {
             next
         };
@@ -188,11 +192,17 @@ impl Demodulator {
         frame
     }
 
-    /// Tries the phases of the word `self.next` at which a preamble may start, until one is a frame.
+    /// Tries the phases of a word at which a preamble may start, until one is a frame.
     #[inline(never)]
-    fn try_hits(&mut self, ring: &SampleRing, hits: u32, counters: &Counters) -> Option<RawFrame> {
-        let word = self.next as u32;
-        let start = self.next * u64::from(SAMPLES_PER_WORD);
+    fn try_hits(
+        &mut self,
+        ring: &SampleRing,
+        at: u64,
+        hits: u32,
+        counters: &Counters,
+    ) -> Option<RawFrame> {
+        let word = at as u32;
+        let start = at * u64::from(SAMPLES_PER_WORD);
         add(&counters.candidates, ones(hits));
         let taken = self.free_from.saturating_sub(start);
         let mut rest = from_phase(hits, taken.min(u64::from(SAMPLES_PER_WORD)) as u32);
@@ -228,15 +238,15 @@ impl Demodulator {
     fn try_without_preamble(
         &mut self,
         ring: &SampleRing,
-        word: u32,
         pairs: Pairs,
         counters: &Counters,
     ) -> Option<RawFrame> {
+        let word = self.next as u32;
         let (pair, opposed) = pairs.best();
         if opposed < STRONG {
             return None;
         }
-        if self.strong_last != word.wrapping_sub(1) {
+        if self.strong_last != word.wrapping_sub(STEP_WORDS) {
             self.strong_since = word;
         }
         self.strong_last = word;

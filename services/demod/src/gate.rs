@@ -1,45 +1,48 @@
 //! The gate: behind which words do bits stand?
 //!
 //! A bit has its pulse in one half and none in the other, so a sample and the one half a bit (4 samples) later are opposed. For pairs of neighbouring
-//! samples, `s` modulo 8 = 0-1, 2-3, 4-5 and 6-7, the gate counts how many are opposed in the seven words that start three words behind a word `n`:
-//! 28 bits, 56 places. A frame whose preamble starts in word `n` has only data there, and at least one of the four pairs lies wholly inside its
+//! samples, `s` modulo 8 = 0-1, 2-3, 4-5 and 6-7, the gate counts how many are opposed in the six words that start four words behind an even word `n`:
+//! 24 bits, 48 places. A frame whose preamble starts in word `n` or `n + 1` has only data there, and at least one of the four pairs lies wholly inside its
 //! first halves.
 //!
 //! ```text
-//!   word    n        n+1      n+2      n+3 ... n+9
-//!           |preamble 64 samples|data ...                      a preamble starts anywhere in word n
-//!                                      |<- 28 bits asked ->|
+//!   word    n        n+1      n+2      n+3      n+4 ... n+9
+//!           |preamble, 64 samples, starts here| |<- 24 bits asked ->|
+//!           |<-  anywhere  ->|
 //!   byte    0 1 | 2 3 | 4 5 | 6 7      four pairs of samples, the same in every byte of every word
 //! ```
-//! It comes before the preamble is looked at, because it costs a third of that and noise passes it less often: white noise has 28 of 56 (standard deviation 3.5 to 4.9),
-//! frames whose bits can be decoded have 44 and more. It keeps a frame whose preamble lies under another transmission, too.
+//! It comes before the preamble is looked at, because it costs a third of that and noise passes it less often: white noise has 24 of 48 (standard deviation 3.5 to 4.9),
+//! frames whose bits can be decoded have 36 and more. It keeps a frame whose preamble lies under another transmission, too.
 //!
 //! What passes is looked at more closely, which takes time. So the threshold is steered by the share of words that pass: it rises where noise crosses the comparator all
 //! the time, and falls where the air is quiet, down to where a slicer has eaten half of every pulse. The steps stand at fixed words of the stream, so the same samples always
 //! give the same threshold.
 //!
-//! The counts are kept four bits wide, eight a register: two of a word fit seven times.
+//! The counts are kept four bits wide, eight a register: two of a word fit six times.
 
 use crate::ring::SampleRing;
 
-/// Words asked.
-const WORDS: u32 = 7;
-/// The first of them, from the word in question.
-const FIRST: u32 = 3;
+/// Words a step: the gate stands at even words.
+pub(crate) const STEP_WORDS: u32 = 2;
+/// Steps asked.
+const STEPS: u32 = 3;
+/// Words from the one in question to the first asked.
+const FIRST: u32 = 4;
 /// Words read from the word in question on: the last one's second halves reach into the word behind it.
-pub(crate) const REACH: u32 = FIRST + WORDS + 1;
+pub(crate) const REACH: u32 = FIRST + STEPS * STEP_WORDS + 1;
 
-/// Words between two steps of the threshold.
+/// Words between two moves of the threshold.
 pub(crate) const STEER_WORDS: u32 = 64;
-/// Words of so many that may pass before the threshold rises: a word that passes costs as much as five that do not.
-const PASSING: u32 = 6;
-/// Threshold steps a word too many or too few, in 1/256 of a place: up in milliseconds, down in tens of them.
-const STEP: u32 = 4;
-/// The threshold's limits, in places of 56, and where it starts.
-const LOWEST: u32 = 26;
-const HIGHEST: u32 = 44;
+/// Steps, of the 32 between two moves, that may pass before the threshold rises: one that passes costs as much as five that do not.
+const PASSING: u32 = 3;
+/// The threshold's moves a step too many or too few, in 1/256 of a place: up within a millisecond, down in tens of them.
+const UP: u32 = 24;
+const DOWN: u32 = 8;
+/// The threshold's limits, in places of 48, and where it starts.
+const LOWEST: u32 = 22;
+const HIGHEST: u32 = 38;
 
-/// Opposed places of a word: two bits a pair of samples, in two registers of eight nibbles.
+/// Opposed places of two words: three bits a pair of samples, in two registers of eight nibbles.
 #[derive(Clone, Copy)]
 struct Opposed {
     /// Pairs 0-1 (high nibbles) and 4-5 (low nibbles).
@@ -51,14 +54,25 @@ struct Opposed {
 impl Opposed {
     const NONE: Self = Self { even: 0, odd: 0 };
 
-    /// Of one word, given the word behind it.
+    /// Of two words, given the word behind them.
     #[inline(always)]
-    fn of(word: u32, behind: u32) -> Self {
-        let places = word ^ (word << 4 | behind >> 28);
-        let pairs = places - ((places >> 1) & 0x5555_5555);
+    fn of(first: u32, second: u32, behind: u32) -> Self {
+        let pairs = |word: u32, next: u32| {
+            let places = word ^ (word << 4 | next >> 28);
+            places - ((places >> 1) & 0x5555_5555)
+        };
+        let (a, b) = (pairs(first, second), pairs(second, behind));
         Self {
-            even: (pairs >> 2) & 0x3333_3333,
-            odd: pairs & 0x3333_3333,
+            even: ((a >> 2) & 0x3333_3333) + ((b >> 2) & 0x3333_3333),
+            odd: (a & 0x3333_3333) + (b & 0x3333_3333),
+        }
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self {
+            even: self.even + other.even,
+            odd: self.odd + other.odd,
         }
     }
 }
@@ -69,7 +83,7 @@ fn total(nibbles: u32) -> u32 {
     (nibbles & 0x0F0F_0F0F).wrapping_mul(0x0101_0101) >> 24
 }
 
-/// Opposed places of the four pairs, 0 to 56 each.
+/// Opposed places of the four pairs, 0 to 48 each.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Pairs(pub(crate) [u32; 4]);
 
@@ -99,18 +113,17 @@ impl Pairs {
     }
 }
 
-/// The running sums.
+/// The last steps' counts.
 pub(crate) struct Gate {
-    sum: Opposed,
-    /// Each word's own, by its index modulo 8.
-    words: [Opposed; 8],
-    /// The next word to be added, as read.
+    /// Of the two steps before the newest one asked.
+    earlier: [Opposed; 2],
+    /// The first word of the next step, as read.
     held: u32,
     /// The word in question.
     at: u32,
     /// The threshold, in 1/256 of a place.
     threshold: u32,
-    /// Words that passed since the last step of it.
+    /// Steps that passed since the threshold moved.
     passed: u32,
 }
 
@@ -118,16 +131,16 @@ impl Gate {
     /// Stands nowhere: the first word it is asked for starts it.
     pub(crate) const fn new() -> Self {
         Self {
-            sum: Opposed::NONE,
-            words: [Opposed::NONE; 8],
+            earlier: [Opposed::NONE; 2],
             held: 0,
+            // Not word 0, which is asked for first.
             at: u32::MAX,
             threshold: LOWEST << 8,
             passed: 0,
         }
     }
 
-    /// Opposed places, of 56, from which on a word passes.
+    /// Opposed places, of 48, from which on a word passes.
     #[inline(always)]
     fn least(&self) -> u32 {
         self.threshold >> 8
@@ -141,60 +154,55 @@ impl Gate {
 
     /// Moves the threshold; to be called once every [`STEER_WORDS`] words of the stream.
     pub(crate) fn steer(&mut self) {
-        let moved = self.threshold + STEP * self.passed - STEP * PASSING;
+        let moved = if self.passed > PASSING {
+            self.threshold + UP * (self.passed - PASSING)
+        } else {
+            self.threshold - DOWN * (PASSING - self.passed)
+        };
         self.threshold = moved.clamp(LOWEST << 8, HIGHEST << 8);
         self.passed = 0;
     }
 
-    /// Goes to a word.
+    /// Goes to a word: reads all but the newest step of those asked.
     #[inline(never)]
     fn start(&mut self, ring: &SampleRing, at: u32) {
-        self.sum = Opposed::NONE;
-        self.words = [Opposed::NONE; 8];
-        self.at = at.wrapping_sub(WORDS);
-        self.held = ring.word(self.at.wrapping_add(FIRST + WORDS));
-        for _ in 0..WORDS {
-            self.step(ring);
-        }
+        let word = |ahead: u32| ring.word(at.wrapping_add(FIRST + ahead));
+        self.earlier = [
+            Opposed::of(word(0), word(1), word(2)),
+            Opposed::of(word(2), word(3), word(4)),
+        ];
+        self.held = word(4);
+        self.at = at;
     }
 
-    /// On to the next word.
-    #[inline(always)]
-    fn step(&mut self, ring: &SampleRing) {
-        let newest = self.at.wrapping_add(FIRST + WORDS);
-        let behind = ring.word(newest.wrapping_add(1));
-        let new = Opposed::of(self.held, behind);
-        let old = self.words[newest.wrapping_add(1) as usize & 7];
-        self.words[newest as usize & 7] = new;
-        // The old one off first: eight words would not fit.
-        self.sum.even = self.sum.even - old.even + new.even;
-        self.sum.odd = self.sum.odd - old.odd + new.odd;
-        self.held = behind;
-        self.at = self.at.wrapping_add(1);
-    }
-
-    /// The first word from `from` on, before `end`, behind which bits stand.
+    /// The first even word from the even word `from` on, before `end`, behind which bits stand. The words up to `end` + [`REACH`] must be there.
     #[inline(never)]
     pub(crate) fn find(&mut self, ring: &SampleRing, from: u32, end: u32) -> Option<(u32, Pairs)> {
-        if from == end {
-            return None;
-        }
         if self.at != from {
             self.start(ring, from);
         }
         let least = self.least();
-        loop {
-            let Opposed { even, odd } = self.sum;
+        let [mut older, mut old] = self.earlier;
+        let (mut at, mut held) = (from, self.held);
+        let mut found = None;
+        while at != end && found.is_none() {
+            let newest = at.wrapping_add(FIRST + (STEPS - 1) * STEP_WORDS);
+            let second = ring.word(newest.wrapping_add(1));
+            let behind = ring.word(newest.wrapping_add(2));
+            let new = Opposed::of(held, second, behind);
+            let Opposed { even, odd } = older.plus(old).plus(new);
             let pairs = [total(even >> 4), total(odd >> 4), total(even), total(odd)];
             if pairs.iter().any(|&opposed| opposed >= least) {
                 self.passed += 1;
-                return Some((self.at, Pairs(pairs)));
+                found = Some((at, Pairs(pairs)));
             }
-            if self.at.wrapping_add(1) == end {
-                return None;
-            }
-            self.step(ring);
+            (older, old, held) = (old, new, behind);
+            at = at.wrapping_add(STEP_WORDS);
         }
+        self.earlier = [older, old];
+        self.held = held;
+        self.at = at;
+        found
     }
 }
 
@@ -211,7 +219,7 @@ mod tests {
     fn counted(ring: &SampleRing, at: u32, pair: u32) -> u32 {
         let sample = |index: u32| ring.word(index / 32) >> (31 - index % 32) & 1;
         let start = (at + FIRST) * 32;
-        (0..WORDS * 4)
+        (0..STEPS * STEP_WORDS * 4)
             .flat_map(|bit| [0, 1].map(|lane| start + 8 * bit + 2 * pair + lane))
             .map(|index| sample(index) ^ sample(index + 4))
             .sum()
@@ -232,16 +240,16 @@ mod tests {
         }
         let (mut gate, mut found, mut from) = (Gate::new(), 0, 20);
         while let Some((at, pairs)) = gate.find(&ring, from, 380) {
-            for skipped in from..at {
+            for skipped in (from..at).step_by(2) {
                 assert!((0..4).all(|pair| counted(&ring, skipped, pair) < LOWEST));
             }
             let expected = [0, 1, 2, 3].map(|pair| counted(&ring, at, pair));
             assert_eq!(pairs, Pairs(expected), "word {at}");
             found += 1;
             // Now and then a jump, which starts the sums anew.
-            from = (at + if found % 9 == 0 { 12 } else { 1 }).min(380);
+            from = (at + if found % 9 == 0 { 12 } else { 2 }).min(380);
         }
-        assert!(found > 50, "{found}");
+        assert!(found > 40, "{found}");
     }
 
     #[test]
@@ -251,7 +259,7 @@ mod tests {
             for index in 0..40 {
                 ring.store(index, 0xF00F_0FF0u32.rotate_right(start));
             }
-            let (_, pairs) = Gate::new().find(&ring, 0, 1).expect("bits are there");
+            let (_, pairs) = Gate::new().find(&ring, 0, 2).expect("bits are there");
             assert_ne!(pairs.phases(LOWEST) & 1 << (31 - start), 0, "start {start}");
         }
         let ring = SampleRing::new();

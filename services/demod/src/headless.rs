@@ -19,11 +19,11 @@ use mode_s::crc24;
 use mode_s::frame::LONG_BYTES;
 use mode_s::parity::HIGHEST_INTERROGATOR_CODE;
 
-/// Opposed places of the gate's best pair, of 56, from which on bits are strong enough to be looked at without a preamble.
-pub(crate) const STRONG: u32 = 46;
+/// Opposed places of the gate's best pair, of 48, from which on bits are strong enough to be looked at without a preamble.
+pub(crate) const STRONG: u32 = 40;
 
 /// Words behind the one at which strong bits began that the search waits: a preamble may still be found.
-pub(crate) const WAIT_WORDS: u32 = 3;
+pub(crate) const WAIT_WORDS: u32 = 4;
 
 /// Words in which a start is looked for.
 pub(crate) const START_WORDS: u32 = 12;

@@ -88,11 +88,12 @@ impl Half {
     }
 }
 
-/// The phases of a word at which a preamble may start.
+/// The phases of two words at which a preamble may start.
 #[inline(never)]
-pub(crate) fn hits(ring: &SampleRing, word: u32) -> u32 {
-    let [a, b, c] = [0, 1, 2].map(|ahead| ring.word(word.wrapping_add(ahead)));
-    Half::of(a, b).hits(Half::of(b, c))
+pub(crate) fn hits(ring: &SampleRing, word: u32) -> [u32; 2] {
+    let [a, b, c, d] = [0, 1, 2, 3].map(|ahead| ring.word(word.wrapping_add(ahead)));
+    let middle = Half::of(b, c);
+    [Half::of(a, b).hits(middle), middle.hits(Half::of(c, d))]
 }
 
 /// Ones of a word. The core has no instruction for it; a multiplication adds the bytes.

@@ -23,6 +23,10 @@ use mode_s::frame::LONG_BYTES;
 const CANDIDATES: usize = 10;
 /// Bits of DF.
 const DF_BITS: u8 = 5;
+/// A certainty above every margin.
+const NONE_YET: u8 = 16;
+/// One in each byte.
+const EACH_BYTE: u32 = 0x0101_0101;
 /// Bits of a long frame.
 const LONG_BITS: usize = LONG_BYTES * 8;
 
@@ -84,17 +88,23 @@ impl Weakest {
     #[inline(never)]
     pub(crate) fn of(samples: Aligned, bytes: usize) -> Self {
         let mut samples = samples;
-        let mut weakest = [(u8::MAX, 0u8); CANDIDATES];
+        let mut weakest = [(NONE_YET, 0u8); CANDIDATES];
         let mut bit = 0u8;
         for _ in 0..bytes * 2 {
             let margins = bits::margins(samples.take());
-            for shift in [24, 16, 8, 0] {
-                let certainty = (margins >> shift & 0xFF).abs_diff(bits::TIE) as u8;
-                if bit >= DF_BITS && certainty < weakest[CANDIDATES - 1].0 {
-                    insert(&mut weakest, certainty, bit);
+            // Which of the four are less certain than the last of the ten? A margin is at most 10 off a tie, so no byte carries into the next.
+            let worst = u32::from(weakest[CANDIDATES - 1].0) * EACH_BYTE;
+            let within = (margins + worst) & !(margins + EACH_BYTE - worst) & (0x80 * EACH_BYTE);
+            if within != 0 {
+                for shift in [24, 16, 8, 0] {
+                    let certainty = (margins >> shift & 0xFF).abs_diff(bits::TIE) as u8;
+                    let number = bit + (24 - shift) / 8;
+                    if certainty < weakest[CANDIDATES - 1].0 && number >= DF_BITS {
+                        insert(&mut weakest, certainty, number);
+                    }
                 }
-                bit += 1;
             }
+            bit += 4;
         }
         let first = LONG_BITS - bytes * 8;
         Self {

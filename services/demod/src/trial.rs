@@ -38,6 +38,9 @@ const LEAST_CERTAINTY: u32 = 22;
 /// a known address. Noise has a mean near 1.1.
 const LEAST_CERTAINTY_QUARTERS: u32 = 7;
 
+/// The same of a frame worth repairing. Frames of the recordings that could be repaired have seven and more.
+const LEAST_REPAIRED_QUARTERS: u32 = 6;
+
 /// Phases tried around a candidate, the likeliest first: the first hit is early, most frames start a sample or two behind it.
 const PHASES: [i32; 4] = [1, 2, 0, -1];
 
@@ -121,12 +124,9 @@ pub(crate) fn try_phases(
         if mismatches(&mut samples) > MOST_MISMATCHES {
             continue;
         }
-        let outcome = demodulate(samples, heard, counters, &mut bytes);
-        if outcome.may_be_repaired() {
-            let certainty = certainty(samples, received(&bytes).len());
-            if certainty > repairable.0 {
-                repairable = (certainty, Some(phase));
-            }
+        let (outcome, certainty) = demodulate(samples, heard, counters, &mut bytes);
+        if outcome.may_be_repaired() && certainty > repairable.0 {
+            repairable = (certainty, Some(phase));
         }
         if best.is_none_or(|so_far| outcome > so_far.outcome) {
             let flips = Flips::NONE;
@@ -141,51 +141,60 @@ pub(crate) fn try_phases(
             return best;
         }
     }
-    if let (Some(tried), (_, Some(phase))) = (&mut best, repairable)
+    if let (Some(tried), (certainty, Some(phase))) = (&mut best, repairable)
         && !tried.outcome.is_accepted()
     {
         let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
         samples.take();
         samples.take();
-        repair(samples, phase, heard, counters, tried);
+        repair(samples, phase, certainty, heard, counters, tried);
     }
     best
 }
 
-/// Demodulates one phase and judges it. `from` stands at the first bit.
+/// Demodulates one phase and judges it; gives the sum of its bits' certainties, too. `from` stands at the first bit.
 #[inline(never)]
 fn demodulate(
     from: Aligned,
     heard: &Heard,
     counters: &Counters,
     bytes: &mut [u8; LONG_BYTES],
-) -> Outcome {
+) -> (Outcome, u32) {
     let mut samples = from;
-    let (first, sure_of_first) = bits::byte_and_certainty(&mut samples);
+    let (first, mut certainty) = bits::byte_and_certainty(&mut samples);
     // DF 0, 4, 5, 11, 16 to 21 and 24 to 31 exist.
     const FORMATS: u32 = 0xFF3F_0831;
     if FORMATS >> (first >> 3) & 1 == 0 {
-        return Outcome::BadFormat;
+        return (Outcome::BadFormat, 0);
     }
-    let (second, sure_of_second) = bits::byte_and_certainty(&mut samples);
-    if sure_of_first + sure_of_second < LEAST_CERTAINTY {
-        return Outcome::NoBits;
+    let (second, sure) = bits::byte_and_certainty(&mut samples);
+    certainty += sure;
+    if certainty < LEAST_CERTAINTY {
+        return (Outcome::NoBits, 0);
     }
     bytes[0] = first;
     bytes[1] = second;
     let length = received(bytes).len();
-    for byte in bytes.iter_mut().take(length).skip(2) {
-        *byte = bits::byte(&mut samples);
+    for byte in bytes.get_mut(2..length).unwrap_or_default() {
+        let (next, sure) = bits::byte_and_certainty(&mut samples);
+        *byte = next;
+        certainty += sure;
     }
-    let residual = crc24::residual(received(bytes));
-    let (vouched, by) = match first >> 3 {
+    let sure = certainty >= length as u32 * 2 * LEAST_CERTAINTY_QUARTERS;
+    (judge(received(bytes), sure, heard, counters), certainty)
+}
+
+/// What the parity says of bits that are sure enough for an address alone, or not.
+#[inline(never)]
+fn judge(frame: &[u8], sure: bool, heard: &Heard, counters: &Counters) -> Outcome {
+    let df = frame.first().map_or(0, |first| first >> 3);
+    let residual = crc24::residual(frame);
+    let (vouched, by) = match df {
         11 | 17..=19 => {
             add(&counters.trials_exact, 1);
             match residual {
                 0 => return Outcome::Exact,
-                1..=HIGHEST_INTERROGATOR_CODE if first >> 3 == 11 => {
-                    (aa(bytes), Outcome::Interrogator)
-                }
+                1..=HIGHEST_INTERROGATOR_CODE if df == 11 => (aa(frame), Outcome::Interrogator),
                 _ => return Outcome::BadParity,
             }
         }
@@ -197,10 +206,10 @@ fn demodulate(
     if !heard.knows(vouched) {
         return Outcome::UnknownAddress;
     }
-    if !is_sure(from, length) {
+    if !sure {
         return Outcome::Unsure;
     }
-    if by == Outcome::Address && !plausible::fields(received(bytes)) {
+    if by == Outcome::Address && !plausible::fields(frame) {
         return Outcome::Implausible;
     }
     by
@@ -208,42 +217,51 @@ fn demodulate(
 
 /// Repairs the most certain phase, if its parity can be explained. `from` stands at its first bit.
 #[inline(never)]
-fn repair(from: Aligned, phase: i32, heard: &Heard, counters: &Counters, tried: &mut Tried) {
+fn repair(
+    from: Aligned,
+    phase: i32,
+    certainty: u32,
+    heard: &Heard,
+    counters: &Counters,
+    tried: &mut Tried,
+) {
     let mut samples = from;
     let mut bytes = [0; LONG_BYTES];
     bytes[0] = bits::byte(&mut samples);
     let length = received(&bytes).len();
-    for byte in bytes.iter_mut().take(length).skip(1) {
+    for byte in bytes.get_mut(1..length).unwrap_or_default() {
         *byte = bits::byte(&mut samples);
     }
     let residual = crc24::residual(received(&bytes));
+    let by_address = !matches!(bytes[0] >> 3, 11 | 17 | 18);
+    let least = if by_address {
+        LEAST_CERTAINTY_QUARTERS
+    } else {
+        LEAST_REPAIRED_QUARTERS
+    };
+    if bytes[0] >> 3 == 19 || certainty < length as u32 * 2 * least {
+        return;
+    }
     let weakest = Weakest::of(from, length);
-    let (outcome, flips) = match bytes[0] >> 3 {
-        11 | 17 | 18 => {
-            let (flips, trials) = weakest.explain(residual);
-            add(&counters.trials_repair, trials);
-            let Some(flips) = flips else { return };
-            flips.apply(&mut bytes);
-            add(&counters.repairs_fitting, 1);
-            if !heard.knows(aa(&bytes)) {
-                return;
-            }
-            (Outcome::Repaired, flips)
+    let (outcome, flips) = if by_address {
+        let (found, trials) = weakest.explain_by_address(residual, heard);
+        add(&counters.trials_address_repair, trials);
+        let Some((flips, _)) = found else { return };
+        flips.apply(&mut bytes);
+        if !plausible::fields(received(&bytes)) {
+            return;
         }
-        19 => return,
-        _ => {
-            if !is_sure(from, length) {
-                return;
-            }
-            let (found, trials) = weakest.explain_by_address(residual, heard);
-            add(&counters.trials_address_repair, trials);
-            let Some((flips, _)) = found else { return };
-            flips.apply(&mut bytes);
-            if !plausible::fields(received(&bytes)) {
-                return;
-            }
-            (Outcome::RepairedAddress, flips)
+        (Outcome::RepairedAddress, flips)
+    } else {
+        let (flips, trials) = weakest.explain(residual);
+        add(&counters.trials_repair, trials);
+        let Some(flips) = flips else { return };
+        flips.apply(&mut bytes);
+        add(&counters.repairs_fitting, 1);
+        if !heard.knows(aa(received(&bytes))) {
+            return;
         }
+        (Outcome::Repaired, flips)
     };
     *tried = Tried {
         outcome,
@@ -255,20 +273,9 @@ fn repair(from: Aligned, phase: i32, heard: &Heard, counters: &Counters, tried: 
 
 /// The address in AA.
 #[inline(always)]
-fn aa(bytes: &[u8; LONG_BYTES]) -> u32 {
-    u32::from_be_bytes([0, bytes[1], bytes[2], bytes[3]])
-}
-
-/// The sum of the certainties of a frame's bits, 0 to 4 each.
-#[inline(never)]
-fn certainty(from: Aligned, bytes: usize) -> u32 {
-    let mut samples = from;
-    (0..bytes * 2)
-        .map(|_| bits::certainty(samples.take()))
-        .sum()
-}
-
-/// Whether a frame's bits are sure enough to be believed by a known address alone.
-fn is_sure(from: Aligned, bytes: usize) -> bool {
-    certainty(from, bytes) >= bytes as u32 * 2 * LEAST_CERTAINTY_QUARTERS
+fn aa(frame: &[u8]) -> u32 {
+    match *frame {
+        [_, a, b, c, ..] => u32::from_be_bytes([0, a, b, c]),
+        _ => 0,
+    }
 }

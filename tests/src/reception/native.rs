@@ -102,7 +102,7 @@ pub fn run_at(
     let counters = native::run(&mut player, options, &mut |raw| {
         frames.push(Decoded {
             bytes: raw.frame.bytes().to_vec(),
-            repaired: raw.repaired,
+            repaired: raw.repaired(),
             arrival_ps: Some((raw.arrival * THREE_TICKS_PS / 3) as i64),
         });
     });

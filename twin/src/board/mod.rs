@@ -41,6 +41,9 @@ use crate::source::random::Random;
 const UNIQUE_ID: [u8; 8] = *b"SQUITTER";
 /// Cycles of one capture word: 32 samples of 15 cycles.
 const WORD_CYCLES: u64 = 480;
+/// A playback starts on a multiple of so many capture words: of the 64 at which the demodulator steers its gate, and of the 7 after which the sampler of
+/// arrivals (a sample in 7 cycles) stands at the same phase of a word again.
+const PLAY_STEP_WORDS: u64 = 64 * 7;
 /// Cycles between a pin and the sampler that reads it.
 const SYNC_CYCLES: u64 = 2;
 /// The system clock the images set; ticks are defined by it.
@@ -283,7 +286,7 @@ impl Board {
         })
     }
 
-    /// Starts playback of `source`: its time zero falls on the first sample of the next capture word, so that a native run of the same
+    /// Starts playback of `source`: its time zero falls on the first sample of a capture word, so that a native run of the same
     /// source with phase zero samples the very same instants. The trigger level has settled by then, as on a board that is on.
     pub fn play(&mut self, source: Box<dyn PulseSource + Send>) -> Result<Playback, Error> {
         self.wait_for_capture()?;
@@ -294,7 +297,7 @@ impl Board {
             self.run_ms(1)?;
         }
         let first = self.chip.bus.pio[0].enabled_at[0] + 1;
-        let words = (self.chip.now() - first) / WORD_CYCLES + 2;
+        let words = ((self.chip.now() - first) / WORD_CYCLES + 2).next_multiple_of(PLAY_STEP_WORDS);
         let start = first + words * WORD_CYCLES;
         self.chip
             .bus
