@@ -184,7 +184,7 @@ impl Demodulator {
         let frame = frame.or_else(|| self.try_without_preamble(ring, pairs, counters));
         let next = self.next + u64::from(STEP_WORDS);
         let behind = if frame.is_some() {
-            (self.free_from / u64::from(SAMPLES_PER_WORD) & !1).max(next)
+            ((self.free_from / u64::from(SAMPLES_PER_WORD)) & !1).max(next)
         } else {
             next
         };
