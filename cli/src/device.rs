@@ -35,7 +35,7 @@ pub fn profile_argument() -> Arg {
 }
 
 /// The image of `--image`, or the checkout's own.
-fn image(matches: &ArgMatches) -> PathBuf {
+pub fn image(matches: &ArgMatches) -> PathBuf {
     match matches.get_one::<PathBuf>("image") {
         Some(path) => path.clone(),
         None => default_image(),

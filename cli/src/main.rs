@@ -7,14 +7,17 @@ mod beast;
 mod completed;
 mod decode;
 mod device;
+mod hardware;
 mod json;
 mod live;
 mod output;
 mod ports;
 mod profile;
+mod programme;
 mod radio;
 mod replay;
 mod scene;
+mod serial;
 
 use std::process::ExitCode;
 

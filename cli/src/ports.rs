@@ -121,8 +121,8 @@ impl Port {
         self.waiting.clear();
     }
 
-    /// Bytes that programs have sent.
-    pub fn read(&mut self) -> Vec<u8> {
+    /// Bytes that programs have sent, at most `limit`; the rest waits where it is.
+    pub fn read(&mut self, limit: usize) -> Vec<u8> {
         self.flush();
         if let Wire::Tcp { listener, client } = &mut self.wire
             && client.is_none()
@@ -134,12 +134,16 @@ impl Port {
             }
         }
         let mut buffer = [0; 4096];
+        let buffer = &mut buffer[..limit.min(4096)];
+        if buffer.is_empty() {
+            return Vec::new();
+        }
         let got = match &mut self.wire {
-            Wire::Pty { master, .. } => master.read(&mut buffer),
+            Wire::Pty { master, .. } => master.read(buffer),
             Wire::Tcp {
                 client: Some(client),
                 ..
-            } => client.read(&mut buffer),
+            } => client.read(buffer),
             Wire::Tcp { client: None, .. } => return Vec::new(),
         };
         match got {
@@ -179,7 +183,7 @@ mod tests {
         terminal.write_all(&all).unwrap();
         let mut back = Vec::new();
         while back.len() < 256 {
-            back.extend(port.read());
+            back.extend(port.read(4096));
         }
         assert_eq!(back, all);
     }
@@ -202,7 +206,7 @@ mod tests {
             client.write_all(b"AT\r\n").unwrap();
             let mut got = Vec::new();
             while got.len() < 4 {
-                got.extend(port.read());
+                got.extend(port.read(4096));
             }
             port.write(b"OK\r\n");
             let mut answer = [0; 4];
@@ -216,7 +220,7 @@ mod tests {
                     ..
                 }
             ) {
-                port.read();
+                port.read(4096);
             }
         }
     }

@@ -6,7 +6,7 @@ use clap::{Arg, ArgMatches, value_parser};
 use twin::front_end::{FrontEnd, Player, PulseSource, Slicer};
 use twin::source::{Format, Recording, RecordingOptions};
 
-use crate::Failure;
+use crate::{Failure, hardware};
 
 /// `--format`, `--rate`, `--slicer`, `--full-scale`.
 pub fn arguments() -> Vec<Arg> {
@@ -24,8 +24,7 @@ pub fn arguments() -> Vec<Arg> {
             .long("slicer")
             .value_name("KIND")
             .value_parser(["rc", "fixed", "peak"])
-            .default_value("rc")
-            .help("How the board's comparator gets its threshold: rc is the adsbee_1090's own"),
+            .help("How the board's comparator gets its threshold [default: as the board; the adsbee_1090's is rc]"),
         Arg::new("full-scale")
             .long("full-scale")
             .value_name("DBM")
@@ -40,7 +39,8 @@ pub fn front_end(matches: &ArgMatches) -> FrontEnd {
     match matches.get_one::<String>("slicer").map(String::as_str) {
         Some("fixed") => FrontEnd::with_slicer(Slicer::Fixed),
         Some("peak") => FrontEnd::with_slicer(Slicer::PeakFollowing),
-        _ => FrontEnd::ADSBEE_1090,
+        Some(_) => FrontEnd::with_slicer(Slicer::RcFollowing),
+        None => hardware::kind(matches).front_end,
     }
 }
 

@@ -11,7 +11,7 @@ use crate::{fw, workspace};
 /// Length of the demonstration without `--seconds`.
 const SECONDS: &str = "60";
 /// Options of `squitter twin` that take a value; what follows them is no FILE.
-const WITH_VALUE: [&str; 13] = [
+const WITH_VALUE: [&str; 18] = [
     "--format",
     "--rate",
     "--slicer",
@@ -24,6 +24,11 @@ const WITH_VALUE: [&str; 13] = [
     "--seed",
     "--tcp",
     "--image",
+    "--board",
+    "--crystal",
+    "--flash",
+    "--eeprom",
+    "--fault",
     "-o",
 ];
 

@@ -15,6 +15,7 @@ pub mod line_noise;
 pub mod pin_serial;
 mod ports;
 pub mod potentiometer;
+pub mod settings;
 
 use std::path::Path;
 
@@ -284,6 +285,30 @@ impl Board {
             comms: self.comms_text(),
             usb: self.chip.bus.usb_host.faults.join("; "),
         })
+    }
+
+    /// A host is plugged in that opens the console, or has it open.
+    pub fn console_expected(&self) -> bool {
+        let host = &self.chip.bus.usb_host;
+        host.plugged() && host.opens
+    }
+
+    /// Runs until the host has opened the console; false where none is there that would.
+    pub fn wait_for_console_if_expected(&mut self) -> Result<bool, Error> {
+        if !self.console_expected() {
+            return Ok(false);
+        }
+        match self.wait_for_console() {
+            Ok(()) => Ok(true),
+            Err(Error::NoConsole { .. }) if !self.console_expected() => Ok(false),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The console is open, and the host reads what it says.
+    pub fn console_answers(&self) -> bool {
+        let host = &self.chip.bus.usb_host;
+        host.open && host.reading
     }
 
     /// Starts playback of `source`: its time zero falls on the first sample of a capture word, so that a native run of the same

@@ -76,6 +76,8 @@ pub struct UsbHost {
     pub open: bool,
     /// The host takes IN data.
     pub reading: bool,
+    /// Whoever reads from the host has room.
+    pub room: bool,
     /// The host opens the console once the device is configured.
     pub opens: bool,
     pub to_device: VecDeque<u8>,
@@ -105,6 +107,7 @@ impl Default for UsbHost {
             descriptors: Vec::new(),
             open: false,
             reading: true,
+            room: true,
             opens: true,
             to_device: VecDeque::new(),
             from_device: VecDeque::new(),
@@ -123,6 +126,11 @@ impl UsbHost {
     /// Plugs the cable in or out.
     pub fn plug(&mut self, plugged: bool) {
         self.plugged = plugged;
+    }
+
+    /// The cable is in.
+    pub fn plugged(&self) -> bool {
+        self.plugged
     }
 
     /// The device was reset: its pull-up is gone for a moment.
@@ -319,6 +327,7 @@ impl UsbHost {
             }
         }
         if self.reading
+            && self.room
             && let Handshake::Data(bytes) = usb.token_in(self.endpoints.bulk_in)
         {
             self.received += bytes.len() as u64;

@@ -99,6 +99,21 @@ fn civil(day: i64) -> (i64, u8, u8) {
     (year, month as u8 + 1, rest as u8 + 1)
 }
 
+/// Unix time of a date's midnight; `None` for a date that does not exist or lies outside 1970 to 2199.
+pub fn unix_s(year: i64, month: i64, day: i64) -> Option<i64> {
+    if !(1970..2200).contains(&year) {
+        return None;
+    }
+    let lengths = (1970..year).map(|y| if leap_year(y) { 366 } else { 365 });
+    let first: i64 = lengths.sum();
+    let mut days = first..first + 366;
+    let found = days.find(|n| {
+        let (y, m, d) = civil(*n);
+        (y, i64::from(m), i64::from(d)) == (year, month, day)
+    });
+    found.map(|n| n * DAY_S)
+}
+
 fn leap_year(year: i64) -> bool {
     year % 4 == 0 && (year % 100 != 0 || year % 400 == 0)
 }
