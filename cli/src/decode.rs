@@ -21,7 +21,7 @@ pub fn command() -> Command {
              aircraft are tracked and confirmed positions added. Empty lines and lines that start with # are skipped; a line that is no \
              frame is told on standard error with its number and the command then exits with 1, after all the others were decoded.",
         )
-        .after_long_help(format!("Fields (only those that the frame has):\n{}", json::FIELDS))
+        .after_long_help(format!("Fields, only those that the frame has. Where pyModeS 3 has a field its name and unit are used.\n\n{}", json::FIELDS))
         .arg(Arg::new("file").value_name("FILE").help("File to read [default: standard input]"))
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON lines (the default and only format)"))
 }
@@ -60,10 +60,10 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
                         second = Some(ms / 1000);
                         tracking.each_second(ms);
                     }
-                    tracking.on_frame(&message, ms);
                 }
-                let aircraft = now_ms.and_then(|ms| Some((tracking.find(message.address()?)?, ms)));
-                writeln!(out, "{}", json::object(&hex, seconds, &message, aircraft))?;
+                let tracked = now_ms.map(|ms| json::Tracked::hear(&mut tracking, &message, ms));
+                let object = json::object(&hex, seconds, &message, tracked.as_ref());
+                writeln!(out, "{object}")?;
             }
             Err(reason) => {
                 refused += 1;

@@ -8,7 +8,7 @@ use mode_s::{Frame, Message};
 use report::{beast, csbee};
 use tracker::Tracker;
 
-use crate::json;
+use crate::json::{self, Tracked};
 
 /// Aircraft tracked at once, as in the firmware.
 const AIRCRAFT: usize = 400;
@@ -120,17 +120,13 @@ impl<W: Write> Printer<W> {
                 let message = Message::decode(&heard.frame);
                 let ms = (ns.max(0) / 1_000_000) as u64;
                 self.seconds_until(ms)?;
-                self.tracking.on_frame(&message, ms);
+                let tracked = Tracked::hear(&mut self.tracking, &message, ms);
                 self.frames_this_second += 1;
                 if self.form == Form::Csbee {
                     return Ok(());
                 }
                 let seconds = ns as f64 * 1e-9;
-                let aircraft = message
-                    .address()
-                    .and_then(|a| self.tracking.find(a))
-                    .map(|a| (a, ms));
-                let object = json::object(&hex, Some(seconds), &message, aircraft);
+                let object = json::object(&hex, Some(seconds), &message, Some(&tracked));
                 writeln!(self.out, "{object}")
             }
         }

@@ -45,6 +45,7 @@ pub mod nic;
 pub mod nl;
 pub mod parity;
 pub mod possible;
+pub mod quality;
 pub mod surveillance;
 
 pub use address::{Address, Icao};

@@ -218,13 +218,21 @@ impl Aircraft {
     /// NIC of the last position message, by the version and the supplements as far as they are known.
     pub fn nic(&self, now_ms: u64) -> Option<u8> {
         let position = self.integrity.within(FIELD_LIFE_MS, now_ms)?;
-        let status = self.status(now_ms).unwrap_or_default();
         let supplements = NicSupplements {
-            a: status.nic_a(),
             b: position.nic_b_or_single_antenna,
-            c: status.nic_c(),
+            ..self.nic_supplements(now_ms)
         };
         Some(nic(position.type_code, self.version, supplements))
+    }
+
+    /// NIC supplements A and C, as far as they are known; B comes with each position.
+    pub fn nic_supplements(&self, now_ms: u64) -> NicSupplements {
+        let status = self.status(now_ms).unwrap_or_default();
+        NicSupplements {
+            a: status.nic_a(),
+            b: false,
+            c: status.nic_c(),
+        }
     }
 
     /// Version of ADS-B: 0 until an operational status tells it.
