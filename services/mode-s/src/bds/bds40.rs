@@ -82,9 +82,10 @@ impl SelectedVerticalIntention {
         })
     }
 
-    /// Something selected is a must; an altitude in whole hundreds and a pressure of real weather agree, the others contradict.
+    /// The ten zeros of the layout agree (a thousandth of all other contents has them), and so do an altitude in whole hundreds and a
+    /// pressure of real weather; other pressures and altitudes that nobody selects contradict.
     pub(super) fn fit(&self) -> Fit {
-        let mut agreements = 0;
+        let mut agreements = 1;
         for altitude in [self.mcp_altitude, self.fms_altitude].into_iter().flatten() {
             let AltitudeFt(feet) = altitude;
             if feet > HIGHEST_FT {
@@ -117,7 +118,7 @@ mod tests {
         assert_eq!(register.fms_altitude, Some(AltitudeFt(3_008)));
         assert_eq!(register.pressure_setting_tenths, Some(10_200));
         assert_eq!((register.modes, register.target_source), (None, None));
-        assert_eq!(register.fit(), Some(3));
+        assert_eq!(register.fit(), Some(4));
     }
 
     #[test]
@@ -146,14 +147,14 @@ mod tests {
             mcp_altitude: Some(AltitudeFt(feet)),
             ..nothing
         };
-        assert_eq!(with_altitude(35_008).fit(), Some(1));
-        assert_eq!(with_altitude(35_056).fit(), Some(0));
+        assert_eq!(with_altitude(35_008).fit(), Some(2));
+        assert_eq!(with_altitude(35_056).fit(), Some(1));
         assert_eq!(with_altitude(50_016).fit(), None);
         let with_pressure = |tenths| SelectedVerticalIntention {
             pressure_setting_tenths: Some(tenths),
             ..nothing
         };
-        assert_eq!(with_pressure(10_132).fit(), Some(1));
+        assert_eq!(with_pressure(10_132).fit(), Some(2));
         assert_eq!(with_pressure(8_500).fit(), None);
     }
 }

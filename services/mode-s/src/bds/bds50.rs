@@ -31,8 +31,8 @@ pub struct TrackAndTurn {
 const STEEPEST_STEPS: i16 = 284;
 /// Fastest, knots: Mach 0.95 in a wind of 150 kt.
 const FASTEST_KT: u16 = 700;
-/// Slowest in the air, knots. On the ground the registers hold less.
-const SLOWEST_KT: u16 = 50;
+/// Below it the relation of roll and turn says nothing: the aircraft taxies, knots.
+const TAXI_KT: u16 = 50;
 /// Strongest wind, knots: jet streams reach 220.
 const WIND_KT: u16 = 220;
 /// What two speeds a few seconds apart may differ by, and how near they agree, knots.
@@ -68,8 +68,7 @@ impl TrackAndTurn {
         let steep = |steps: i16| steps.unsigned_abs() > STEEPEST_STEPS as u16;
         let speeds = [self.ground_speed_kt, self.true_airspeed_kt];
         let too_fast = speeds.into_iter().flatten().any(|kt| kt > FASTEST_KT);
-        let too_slow = self.true_airspeed_kt.is_some_and(|kt| kt < SLOWEST_KT);
-        if self.roll_steps.is_some_and(steep) || too_fast || too_slow {
+        if self.roll_steps.is_some_and(steep) || too_fast {
             return None;
         }
         let mut agreements = self.turn_fits()?;
@@ -115,8 +114,11 @@ impl TrackAndTurn {
         ) else {
             return Some(0);
         };
+        if speed < TAXI_KT {
+            return Some(0);
+        }
         // 19.04 × 45 / 256 × 32 = 107.1 32nds a second for each step of roll and each knot; the tangent adds a third at 50°.
-        let expected = i32::from(roll) * 107 / i32::from(speed.max(SLOWEST_KT));
+        let expected = i32::from(roll) * 107 / i32::from(speed);
         let away = (expected - i32::from(rate)).abs();
         // A degree a second for lag and rounding, and half of what a steep turn makes.
         if away > 32 + expected.abs() / 2 {

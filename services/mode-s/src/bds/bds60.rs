@@ -26,9 +26,8 @@ pub struct HeadingAndSpeed {
     pub inertial_rate_fpm: Option<i16>,
 }
 
-/// Fastest and slowest indicated airspeed, knots.
+/// Fastest indicated airspeed, knots. There is no slowest: registers are filled on the ground, too.
 const FASTEST_KT: u16 = 500;
-const SLOWEST_KT: u16 = 40;
 /// Fastest Mach number, thousandths.
 const FASTEST_MACH: u16 = 1_000;
 /// Steepest climb, feet a minute.
@@ -41,6 +40,8 @@ const RATE_ROOM_FPM: u16 = 2_500;
 const RATE_AGREES_FPM: u16 = 500;
 /// What IAS may lie beside that of Mach and altitude: a tenth for the errors of the probes, and knots for rounding.
 const AIRSPEED_ROOM_KT: u16 = 12;
+/// Mach number above which an aircraft flies, thousandths.
+const FLYING_MACH: u16 = 100;
 /// IAS in knots for each Mach number of 1, at 45 000 ft and at sea level.
 const LEAST_KT_A_MACH: u32 = 240;
 const MOST_KT_A_MACH: u32 = 690;
@@ -64,9 +65,8 @@ impl HeadingAndSpeed {
     pub(super) fn fit(&self, known: &Known) -> Fit {
         let rates = [self.baro_rate_fpm, self.inertial_rate_fpm];
         let steep = |fpm: i16| fpm.unsigned_abs() > STEEPEST_FPM;
-        let speed_is_wrong = |kt: u16| !(SLOWEST_KT..=FASTEST_KT).contains(&kt);
         if rates.into_iter().flatten().any(steep)
-            || self.indicated_airspeed_kt.is_some_and(speed_is_wrong)
+            || self.indicated_airspeed_kt.is_some_and(|kt| kt > FASTEST_KT)
             || self
                 .mach_thousandths
                 .is_some_and(|mach| mach > FASTEST_MACH)
@@ -88,11 +88,14 @@ impl HeadingAndSpeed {
                 agreements += 2;
             }
             (Some(ias), Some(mach), None) => {
-                let (mach, thousand) = (u32::from(mach), u32::from(ias) * 1_000);
-                if !(mach * LEAST_KT_A_MACH..=mach * MOST_KT_A_MACH).contains(&thousand) {
+                let least = u32::from(mach) * LEAST_KT_A_MACH / 1_000;
+                let most = u32::from(mach) * MOST_KT_A_MACH / 1_000;
+                let room = u32::from(AIRSPEED_ROOM_KT);
+                if !(least..=most + 2 * room).contains(&(u32::from(ias) + room)) {
                     return None;
                 }
-                agreements += 1;
+                // A taxiing aircraft has a Mach number of one step, which fits anything.
+                agreements += u8::from(mach >= FLYING_MACH);
             }
             _ => {}
         }
@@ -190,8 +193,26 @@ mod tests {
     }
 
     #[test]
+    fn a_taxiing_aircraft_does_not_contradict() {
+        // 4 kt at Mach 0.004, both rates 0, and a track near the heading.
+        let taxiing = HeadingAndSpeed {
+            indicated_airspeed_kt: Some(4),
+            mach_thousandths: Some(4),
+            baro_rate_fpm: Some(0),
+            inertial_rate_fpm: Some(0),
+            ..published()
+        };
+        assert_eq!(taxiing.fit(&Known::NOTHING), Some(1));
+        let known = Known {
+            track: Some(CentiDegrees(4_300)),
+            ..Known::NOTHING
+        };
+        assert_eq!(taxiing.fit(&known), Some(2));
+    }
+
+    #[test]
     fn impossible_speeds_contradict() {
-        for (ias, mach) in [(501, 700), (39, 60), (259, 1_004), (259, 300)] {
+        for (ias, mach) in [(501, 700), (259, 1_004), (259, 300)] {
             let register = HeadingAndSpeed {
                 indicated_airspeed_kt: Some(ias),
                 mach_thousandths: Some(mach),
