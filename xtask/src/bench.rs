@@ -1,13 +1,13 @@
 //! `cargo xtask bench <name>`: a benchmark of the `tests` crate. Its last line is `result: key=value …`; its rows go to
-//! `target/bench/<name>.csv`. With `--save` the table it prints is written to `docs/bench/<name>.txt`, which is committed. `twin-peers` is
-//! not one of that crate's: it compares the twin with others (`peers`).
+//! `target/bench/<name>.csv`. With `--save` the table it prints is written to `docs/bench/<name>.txt`, which is committed. `twin-peers` and
+//! `golden` are not of that crate: they compare with programs in Python (`peers`, `golden`).
 
 use std::process::Command;
 
-use crate::{fw, peers, workspace};
+use crate::{fw, golden, peers, workspace};
 
 /// The benchmarks and what they measure.
-const BENCHES: [(&str, &str); 9] = [
+const BENCHES: [(&str, &str); 10] = [
     (
         "twin",
         "emulated MHz and share of real time: one core, two cores, two cores with capture and DMA, the image on real traffic",
@@ -44,9 +44,16 @@ const BENCHES: [(&str, &str); 9] = [
         PEERS,
         "random PIO programs in the twin and in an independent emulator, cycle by cycle [--programs N] [--seed S]",
     ),
+    (
+        GOLDEN,
+        "squitter decode of two recorded logs beside pyModeS, field by field [--show]",
+    ),
 ];
 /// The one that `peers` runs.
 const PEERS: &str = "twin-peers";
+
+/// The one that `golden` runs.
+const GOLDEN: &str = "golden";
 
 /// The list, for the usage text.
 pub fn list() -> String {
@@ -66,6 +73,9 @@ pub fn run(arguments: &[&str]) -> Result<(), String> {
     };
     if *name == PEERS {
         return peers::bench(rest);
+    }
+    if *name == GOLDEN {
+        return golden::bench(rest);
     }
     if !BENCHES.iter().any(|(n, _)| n == name) {
         return Err(format!(

@@ -18,6 +18,7 @@ mod edges;
 mod elf;
 mod flash_image;
 mod fw;
+mod golden;
 mod hot;
 mod keys;
 mod peers;

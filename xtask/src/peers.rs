@@ -1,6 +1,6 @@
 //! `cargo xtask bench twin-peers`: the twin's PIO against an emulator that none of us wrote, the PyPI package `rp2040-pio-emulator`.
 //!
-//! Makes a Python environment in `target/peers/venv` with the pinned package, builds the twin's side (`tests/peers/pio_trace.rs`) and runs
+//! Makes a Python environment in `target/peers/venv` with the pinned packages, builds the twin's side (`tests/peers/pio_trace.rs`) and runs
 //! the comparison (`tests/peers/pio_peer.py`, which says what is compared and what counts as accepted). Needs python3 with venv and
 //! pip, and the package index the first time.
 
@@ -42,7 +42,7 @@ pub fn test() -> Result<(), String> {
 }
 
 /// The environment's interpreter; makes the environment unless it was made from the same list.
-fn environment(root: &Path) -> Result<PathBuf, String> {
+pub fn environment(root: &Path) -> Result<PathBuf, String> {
     let wanted = root.join("tests/peers/requirements.txt");
     let venv = workspace::target()?.join("peers/venv");
     let installed = venv.join("installed.txt");

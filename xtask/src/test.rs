@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::{check, fw, peers, size, workspace};
+use crate::{check, fw, golden, peers, size, workspace};
 
 /// Runs all of it.
 pub fn run() -> Result<(), String> {
@@ -40,6 +40,8 @@ pub fn run() -> Result<(), String> {
     workspace::run(&mut tests)?;
     println!("test: the twin's PIO against an independent emulator");
     peers::test()?;
+    println!("test: squitter decode against pyModeS");
+    golden::bench(&[])?;
     println!("test: all good");
     Ok(())
 }
