@@ -125,6 +125,17 @@ impl Frame {
         crc24::residual(self.bytes())
     }
 
+    /// The bits as four words, the first bit in the first word's bit 31; zeros behind the end.
+    pub fn words(&self) -> [u32; 4] {
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = self.bytes;
+        [
+            u32::from_be_bytes([a, b, c, d]),
+            u32::from_be_bytes([e, f, g, h]),
+            u32::from_be_bytes([i, j, k, l]),
+            u32::from_be_bytes([m, n, 0, 0]),
+        ]
+    }
+
     /// Bits `first..=last`, numbered from 1 as in the standard, at most 32 of them.
     pub(crate) fn bits(&self, first: usize, last: usize) -> u32 {
         bits(&self.bytes, first, last)

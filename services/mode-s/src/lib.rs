@@ -41,6 +41,7 @@ pub mod identity;
 pub mod kind;
 pub mod me;
 pub mod message;
+pub mod mode_c;
 pub mod nic;
 pub mod nl;
 pub mod parity;

@@ -2,7 +2,7 @@
 //! 2^32 as each total wraps:
 //!
 //! ```text
-//!   offered   = born + updated + unknown_address + broken + not_tracked
+//!   offered   = born + updated + duplicate + unknown_address + no_address + no_place + broken + not_tracked
 //!   positions = shown + waiting + refused
 //!   born      = tracked now + timed_out + displaced
 //! ```
@@ -14,8 +14,14 @@ pub enum Outcome {
     Born,
     /// A known aircraft.
     Updated,
-    /// The parity is not exact and no aircraft with that address is known.
+    /// The same bits as a moment ago: the same transmission.
+    Duplicate,
+    /// The parity is not exact, no aircraft with that address is known, and no other weak frame agrees.
     UnknownAddress,
+    /// The address is all zeros or all ones, which ICAO gives to nobody.
+    NoAddress,
+    /// A new aircraft, but all places are taken by aircraft worth more.
+    NoPlace,
     /// The parity is wrong.
     Broken,
     /// A format without a parity rule (DF19, 24, unassigned).
@@ -27,9 +33,9 @@ pub enum Outcome {
 pub enum PositionOutcome {
     /// The aircraft's position is now this one.
     Shown,
-    /// No pair yet, or the first of two that must agree.
+    /// No pair yet, or not enough messages that agree with it.
     Waiting,
-    /// Impossible: the pair gives no place, or one too far from the last.
+    /// Impossible: the pair's halves or the place before are too far away, or the receiver is.
     Refused,
 }
 
@@ -42,8 +48,14 @@ pub struct Counters {
     pub born: u32,
     /// See [`Outcome::Updated`].
     pub updated: u32,
+    /// See [`Outcome::Duplicate`].
+    pub duplicate: u32,
     /// See [`Outcome::UnknownAddress`].
     pub unknown_address: u32,
+    /// See [`Outcome::NoAddress`].
+    pub no_address: u32,
+    /// See [`Outcome::NoPlace`].
+    pub no_place: u32,
     /// See [`Outcome::Broken`].
     pub broken: u32,
     /// See [`Outcome::NotTracked`].
@@ -67,7 +79,10 @@ impl Counters {
         offered: 0,
         born: 0,
         updated: 0,
+        duplicate: 0,
         unknown_address: 0,
+        no_address: 0,
+        no_place: 0,
         broken: 0,
         not_tracked: 0,
         positions: 0,
@@ -83,7 +98,10 @@ impl Counters {
         let total = match outcome {
             Outcome::Born => &mut self.born,
             Outcome::Updated => &mut self.updated,
+            Outcome::Duplicate => &mut self.duplicate,
             Outcome::UnknownAddress => &mut self.unknown_address,
+            Outcome::NoAddress => &mut self.no_address,
+            Outcome::NoPlace => &mut self.no_place,
             Outcome::Broken => &mut self.broken,
             Outcome::NotTracked => &mut self.not_tracked,
         };

@@ -1,23 +1,31 @@
 //! From encoded positions to a confirmed place.
 //!
 //! ```text
-//!   state          encoded position                        next
-//!   nothing        half of a pair                          nothing        Waiting
-//!   nothing        the other half within its life          candidate      Waiting   (both halves are used up)
-//!   candidate      a new pair, near the candidate          shown          Shown
-//!   candidate      a new pair, elsewhere                   candidate      Refused   (the new one)
-//!   shown          decoded near the last place, plausible  shown          Shown
-//!   shown          not plausible, fewer than 4 in a row    shown          Refused
-//!   shown          not plausible, 4th in a row             nothing        Refused
+//!   state       encoded position                                     next
+//!   nothing     no half of the other format in time                  nothing     Waiting   (it is kept as a half)
+//!   nothing     a pair whose two places the aircraft cannot join     nothing     Refused   (it is kept as a half)
+//!   nothing     a pair that agrees                                   candidate   Waiting   (both halves are used up)
+//!   candidate   near it, and a format has not agreed yet             candidate   Waiting
+//!   candidate   near it, both formats have agreed                    shown       Shown
+//!   candidate   elsewhere                                            as before   Refused   (it is kept as a half)
+//!   shown       near the last place, in time                         shown       Shown
+//!   shown       near the last place, after a gap                     candidate   Waiting   (any further one that agrees will do)
+//!   shown       elsewhere, fewer than 4 in a row                     shown       Refused   (it is kept as a half)
+//!   shown       elsewhere, 4th in a row                              nothing     Refused
 //! ```
-//! A place is shown only when two pairs without a common message agree: one wrong half moves a pair by whole zones, and a second pair
-//! with the same half could not tell. Plausible means: no farther from the last place than the aircraft can have flown.
-
-use crate::field::Field;
-use mode_s::cpr::{global, local};
-use mode_s::{Cpr, CprFormat, CprKind, Position};
+//! A place is shown only when a pair and one more message of *each* format agree. One wrong half can move a pair by whole zones so that both its
+//! places agree; the wrong zone is then seen only by the other message of the same format as the wrong half, and which half that
+//! is nobody knows. The decision, with what it costs and what it withstands, is docs/adr/0008.
+//!
+//! "Near" is what the aircraft can have flown ([`crate::reach`]). "In time" is while that is less than half a step between the zones, beyond which
+//! a wrong zone could not be told from a flight.
 
 use crate::counters::PositionOutcome;
+use crate::reach::{Reach, is_within};
+use crate::reference::References;
+use crate::stamp::Stamp;
+use mode_s::cpr::{global, local};
+use mode_s::{Cpr, CprFormat, CprKind, Position};
 
 /// Age at which a shown place is no longer told nor used to decode others, ms.
 const PLACE_LIFE_MS: u32 = 60_000;
@@ -29,64 +37,104 @@ const SURFACE_PAIR_MS: u32 = 25_000;
 const REFUSALS_TO_GIVE_UP: u8 = 4;
 /// Farthest an aircraft can be heard, metres: 400 NM, beyond the radio horizon of any airliner.
 const RECEPTION_RANGE_M: u64 = 741_000;
-/// Speed allowed in the air where none is known, knots.
-const AIRBORNE_LIMIT_KT: u64 = 1_200;
-/// Speed allowed on the surface, knots: beyond any take-off.
-const SURFACE_LIMIT_KT: u64 = 300;
-/// Allowed beside the flown distance, metres: the error of the positions themselves.
-const MARGIN_M: u64 = 1_000;
+
+/// Still to agree with a candidate: an even message.
+const EVEN: u8 = 1;
+/// Still to agree with a candidate: an odd message.
+const ODD: u8 = 2;
+/// Still to agree with a candidate: a message of either format.
+const EITHER: u8 = 4;
+
+/// Half of a pair in two words: 17 bits of latitude and the kind, 17 bits of longitude.
+#[derive(Clone, Copy, Debug)]
+struct Half {
+    latitude_kind: u32,
+    longitude: u32,
+}
+
+/// Bit 17 of the first word: a surface message.
+const SURFACE: u32 = 1 << 17;
+
+impl Half {
+    const NONE: Half = Half {
+        latitude_kind: 0,
+        longitude: 0,
+    };
+
+    fn new(cpr: Cpr) -> Half {
+        let kind = match cpr.kind {
+            CprKind::Airborne => 0,
+            CprKind::Surface => SURFACE,
+        };
+        Half {
+            latitude_kind: cpr.latitude & (SURFACE - 1) | kind,
+            longitude: cpr.longitude,
+        }
+    }
+
+    fn cpr(self, format: CprFormat) -> Cpr {
+        Cpr {
+            kind: if self.latitude_kind & SURFACE == 0 {
+                CprKind::Airborne
+            } else {
+                CprKind::Surface
+            },
+            format,
+            latitude: self.latitude_kind & (SURFACE - 1),
+            longitude: self.longitude,
+        }
+    }
+}
 
 /// Everything that is known of an aircraft's place.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Places {
-    even: Field<Cpr>,
-    odd: Field<Cpr>,
-    candidate: Field<Position>,
-    shown: Field<Position>,
+    even: Half,
+    odd: Half,
+    candidate: Position,
+    shown: Position,
+    even_at: Stamp,
+    odd_at: Stamp,
+    candidate_at: Stamp,
+    shown_at: Stamp,
+    /// What must still agree with the candidate.
+    needs: u8,
     refusals: u8,
-}
-
-/// Places that do not depend on the aircraft.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct KnownPlaces {
-    /// Where the receiver stands.
-    pub receiver: Option<Position>,
-    /// The last place shown of any aircraft in the air. It was heard, so it is within radio range of the receiver: enough for the
-    /// 45° that a surface pair asks of its reference.
-    pub neighbour: Option<Position>,
 }
 
 /// What is known beside the encoded position itself.
 pub(crate) struct Surroundings<'a> {
-    /// Ground speed, eighths of a knot.
+    /// Ground speed, eighths of a knot, where one was told lately.
     pub ground_speed_eighths: Option<u16>,
+    /// The frame has repaired bits.
+    pub is_repaired: bool,
     /// Places that do not depend on the aircraft.
-    pub known: &'a KnownPlaces,
+    pub references: &'a References,
 }
 
+const NOWHERE: Position = Position {
+    latitude: 0,
+    longitude: 0,
+};
+
 impl Places {
-    pub(crate) const NONE: Places = {
-        let nowhere = Position {
-            latitude: 0,
-            longitude: 0,
-        };
-        let no_half = Cpr {
-            kind: CprKind::Airborne,
-            format: CprFormat::Even,
-            latitude: 0,
-            longitude: 0,
-        };
-        Places {
-            even: Field::unknown(no_half),
-            odd: Field::unknown(no_half),
-            candidate: Field::unknown(nowhere),
-            shown: Field::unknown(nowhere),
-            refusals: 0,
-        }
+    pub(crate) const NONE: Places = Places {
+        even: Half::NONE,
+        odd: Half::NONE,
+        candidate: NOWHERE,
+        shown: NOWHERE,
+        even_at: Stamp::NEVER,
+        odd_at: Stamp::NEVER,
+        candidate_at: Stamp::NEVER,
+        shown_at: Stamp::NEVER,
+        needs: 0,
+        refusals: 0,
     };
 
     pub(crate) fn shown(&self, now_ms: u64) -> Option<Position> {
-        self.shown.within(PLACE_LIFE_MS, now_ms)
+        self.shown_at
+            .is_within(PLACE_LIFE_MS, now_ms)
+            .then_some(self.shown)
     }
 
     /// Takes an encoded position heard at `at_ms`.
@@ -96,114 +144,142 @@ impl Places {
         around: &Surroundings<'_>,
         at_ms: u64,
     ) -> PositionOutcome {
+        let reach = |since: Stamp| {
+            let age_ms = since.age_ms(at_ms).unwrap_or(u32::MAX);
+            Reach::of(cpr.kind, around.ground_speed_eighths, around.is_repaired, age_ms)
+        };
+        if self.candidate_at != Stamp::NEVER {
+            let reach = reach(self.candidate_at);
+            if reach.tells_zones() {
+                return self.confirm(cpr, reach, at_ms);
+            }
+            self.candidate_at = Stamp::NEVER;
+        }
         match self.shown(at_ms) {
-            Some(last) => self.follow(last, cpr, around, at_ms),
+            Some(last) => self.follow(last, cpr, reach(self.shown_at), at_ms),
             None => self.acquire(cpr, around, at_ms),
         }
     }
 
-    /// Forgets what is too old to use, so that no age ever passes half the range of its 32 bits.
+    /// Forgets what is too old to use, so that no age outgrows its stamp.
     pub(crate) fn second_ends(&mut self, now_ms: u64) {
-        self.even.expire(SURFACE_PAIR_MS, now_ms);
-        self.odd.expire(SURFACE_PAIR_MS, now_ms);
-        self.candidate.expire(PLACE_LIFE_MS, now_ms);
-        self.shown.expire(PLACE_LIFE_MS, now_ms);
+        self.even_at.expire(SURFACE_PAIR_MS, now_ms);
+        self.odd_at.expire(SURFACE_PAIR_MS, now_ms);
+        self.candidate_at.expire(PLACE_LIFE_MS, now_ms);
+        // The last place is a reference for as long as the aircraft is tracked.
+        self.shown_at.hold(now_ms);
     }
 
+    /// A candidate is known: does this message agree with it?
+    fn confirm(&mut self, cpr: Cpr, reach: Reach, at_ms: u64) -> PositionOutcome {
+        let Some(place) = local(cpr, self.candidate)
+            .filter(|&place| is_within(self.candidate, place, reach.metres()))
+        else {
+            self.candidate_at = Stamp::NEVER;
+            return self.refuse(cpr, at_ms);
+        };
+        self.needs &= match cpr.format {
+            CprFormat::Even => !(EVEN | EITHER),
+            CprFormat::Odd => !(ODD | EITHER),
+        };
+        if self.needs == 0 {
+            self.candidate_at = Stamp::NEVER;
+            return self.show(place, at_ms);
+        }
+        self.candidate = place;
+        self.candidate_at = Stamp::at(at_ms);
+        PositionOutcome::Waiting
+    }
+
+    /// A place is shown: has the aircraft flown on from there?
     fn follow(
         &mut self,
         last: Position,
         cpr: Cpr,
-        around: &Surroundings<'_>,
+        reach: Reach,
         at_ms: u64,
     ) -> PositionOutcome {
-        let reach = reach_m(cpr.kind, around, self.shown.age_ms(at_ms));
-        match local(cpr, last).filter(|&place| is_within(last, place, reach)) {
-            Some(place) => {
-                self.shown.set(place, at_ms);
-                self.refusals = 0;
-                PositionOutcome::Shown
-            }
-            None => {
-                self.refusals += 1;
-                if self.refusals == REFUSALS_TO_GIVE_UP {
-                    *self = Places::NONE;
-                }
-                PositionOutcome::Refused
-            }
+        match local(cpr, last).filter(|&place| is_within(last, place, reach.metres())) {
+            Some(place) if reach.tells_zones() => self.show(place, at_ms),
+            Some(place) => self.suppose(place, EITHER, at_ms),
+            None => self.refuse(cpr, at_ms),
         }
     }
 
+    /// Nothing is known: a pair may tell.
     fn acquire(&mut self, cpr: Cpr, around: &Surroundings<'_>, at_ms: u64) -> PositionOutcome {
-        let (same, other) = match cpr.format {
-            CprFormat::Even => (&mut self.even, &self.odd),
-            CprFormat::Odd => (&mut self.odd, &self.even),
+        let (other, other_at) = match cpr.format {
+            CprFormat::Even => (self.odd.cpr(CprFormat::Odd), self.odd_at),
+            CprFormat::Odd => (self.even.cpr(CprFormat::Even), self.even_at),
         };
-        same.set(cpr, at_ms);
-        let pair_life = match cpr.kind {
+        self.keep(cpr, at_ms);
+        let pair_ms = match cpr.kind {
             CprKind::Airborne => AIRBORNE_PAIR_MS,
             CprKind::Surface => SURFACE_PAIR_MS,
         };
-        let other = other.within(pair_life, at_ms);
-        let Some(other) = other.filter(|half| half.kind == cpr.kind) else {
+        let Some(apart_ms) = other_at.age_ms(at_ms).filter(|&apart_ms| apart_ms <= pair_ms) else {
             return PositionOutcome::Waiting;
         };
-        let reference = around.known.receiver.or(around.known.neighbour);
-        if cpr.kind == CprKind::Surface && reference.is_none() {
+        let reach = Reach::of(cpr.kind, around.ground_speed_eighths, around.is_repaired, apart_ms);
+        if other.kind != cpr.kind || !reach.tells_zones() {
             return PositionOutcome::Waiting;
         }
-        let found = global(other, cpr, reference).filter(|&place| {
-            around
-                .known
-                .receiver
-                .is_none_or(|receiver| is_within(receiver, place, RECEPTION_RANGE_M))
-        });
-        let Some(place) = found else {
-            return PositionOutcome::Refused;
+        let reference = match around.references.receiver() {
+            Some(receiver) => Some(receiver),
+            None if self.shown_at != Stamp::NEVER => Some(self.shown),
+            None => around.references.somewhere(at_ms),
         };
-        self.even.clear();
-        self.odd.clear();
-        let candidate = self.candidate.within(PLACE_LIFE_MS, at_ms);
-        let reach = reach_m(cpr.kind, around, self.candidate.age_ms(at_ms));
-        self.candidate.set(place, at_ms);
-        match candidate {
-            Some(candidate) if is_within(candidate, place, reach) => {
-                self.shown.set(place, at_ms);
+        // None too where the aircraft has crossed a step of NL between the halves, or a surface pair has no reference.
+        let Some(place) = global(other, cpr, reference) else {
+            return PositionOutcome::Waiting;
+        };
+        let joins = |before| is_within(before, place, reach.metres());
+        let hears = |receiver| is_within(receiver, place, RECEPTION_RANGE_M);
+        if !local(other, place).is_some_and(joins)
+            || !around.references.receiver().is_none_or(hears)
+        {
+            return PositionOutcome::Refused;
+        }
+        self.even_at = Stamp::NEVER;
+        self.odd_at = Stamp::NEVER;
+        self.suppose(place, EVEN | ODD, at_ms)
+    }
+
+    fn suppose(&mut self, place: Position, needs: u8, at_ms: u64) -> PositionOutcome {
+        self.candidate = place;
+        self.candidate_at = Stamp::at(at_ms);
+        self.needs = needs;
+        PositionOutcome::Waiting
+    }
+
+    fn show(&mut self, place: Position, at_ms: u64) -> PositionOutcome {
+        self.shown = place;
+        self.shown_at = Stamp::at(at_ms);
+        self.refusals = 0;
+        PositionOutcome::Shown
+    }
+
+    /// The message does not fit: after too many of them what is shown does not either.
+    fn refuse(&mut self, cpr: Cpr, at_ms: u64) -> PositionOutcome {
+        self.keep(cpr, at_ms);
+        if self.shown(at_ms).is_some() {
+            self.refusals += 1;
+            if self.refusals >= REFUSALS_TO_GIVE_UP {
+                self.shown_at = Stamp::NEVER;
                 self.refusals = 0;
-                PositionOutcome::Shown
             }
-            Some(_) => PositionOutcome::Refused,
-            None => PositionOutcome::Waiting,
+        }
+        PositionOutcome::Refused
+    }
+
+    /// Keeps a message as half of a pair to come.
+    fn keep(&mut self, cpr: Cpr, at_ms: u64) {
+        let (half, at) = (Half::new(cpr), Stamp::at(at_ms));
+        match cpr.format {
+            CprFormat::Even => (self.even, self.even_at) = (half, at),
+            CprFormat::Odd => (self.odd, self.odd_at) = (half, at),
         }
     }
-}
-
-/// How far an aircraft can have moved in `age_ms`, metres.
-fn reach_m(kind: CprKind, around: &Surroundings<'_>, age_ms: u32) -> u64 {
-    let knots = match (kind, around.ground_speed_eighths) {
-        (CprKind::Surface, _) => SURFACE_LIMIT_KT,
-        // Twice the last speed and 100 kt: it may be accelerating, and the speed may be a minute old.
-        (CprKind::Airborne, Some(eighths)) => u64::from(eighths) / 4 + 100,
-        (CprKind::Airborne, None) => AIRBORNE_LIMIT_KT,
-    };
-    // 1 kt is 1852 m an hour.
-    knots * u64::from(age_ms) * 1852 / 3_600_000 + MARGIN_M
-}
-
-/// Whether two places are at most `reach_m` metres apart, on a plane with the meridians drawn together as at their middle latitude.
-/// The error is below a percent up to 400 NM in the latitudes where people live, which is all that plausibility needs.
-fn is_within(a: Position, b: Position, reach_m: u64) -> bool {
-    const TURN: i64 = 3_600_000_000;
-    let north = i64::from(a.latitude) - i64::from(b.latitude);
-    let east = i64::from(a.longitude) - i64::from(b.longitude);
-    let east = (east + TURN / 2).rem_euclid(TURN) - TURN / 2;
-    // Bhaskara's cos x = (32400 - 4x²) / (32400 + x²) with x in degrees, here tenths of them; within 0.002.
-    let tenths = (i64::from(a.latitude) + i64::from(b.latitude)) / 2_000_000;
-    let square = tenths * tenths;
-    let east = east * (3_240_000 - 4 * square) / (3_240_000 + square);
-    // 1e-7 degrees of a great circle of 40 030 km are 0.011 119 m.
-    let metres = |angle: i64| (angle * 11_119 / 1_000_000).unsigned_abs();
-    metres(north).pow(2) + metres(east).pow(2) <= reach_m.pow(2)
 }
 
 #[cfg(test)]

@@ -1,13 +1,35 @@
 //! The table of aircraft: who is born, updated and ended.
+//!
+//! ```text
+//!   parity broken, or no rule for it ──────────────────► Broken, NotTracked
+//!   address all zeros or all ones ─────────────────────► NoAddress
+//!   same bits as a moment ago ─────────────────────────► Duplicate
+//!   address tracked ───────────────────────────────────► Updated
+//!   parity exact, no bit repaired, or
+//!   weak and agrees with another weak frame ─┬ place ──► Born
+//!                                            └ none ───► NoPlace
+//!   weak ──────────────────────────────────────────────► UnknownAddress
+//! ```
 
-use crate::aircraft::Aircraft;
+use crate::aircraft::{Aircraft, credit_ms, packed};
 use crate::counters::{Counters, Outcome, PositionOutcome};
+use crate::hear::{Hearing, is_proof};
 use crate::index::Index;
-use crate::place::KnownPlaces;
-use mode_s::{Address, Message, Parity, Position};
+use crate::mode_ac::{ModeAc, Replies};
+use crate::nursery::{Nursery, Word, is_one_bit_from};
+use crate::recent::Recent;
+use crate::reference::{Candidate, References, RxPosition};
+use crate::signal::Heard;
+use mode_s::{Address, Frame, Icao, Message, ModeACode, Parity};
 
 /// Silence after which an aircraft is no longer tracked, ms. The CSBee document's 60 s.
 pub const TIMEOUT_MS: u32 = 60_000;
+/// Time after which the tracker ends a second of itself, ms: when its caller has not, ages must still not outgrow their stamps.
+const OWN_SECOND_MS: u64 = 5_000;
+
+/// What a new aircraft must be worth more than the one that leaves for it, ms: in a full sky aircraft of one worth do not chase each other
+/// out with every frame.
+const LEAD_MS: i32 = 3_000;
 
 /// Up to `N` aircraft (at most 65 534) in fixed memory.
 pub struct Tracker<const N: usize> {
@@ -15,8 +37,16 @@ pub struct Tracker<const N: usize> {
     aircraft: [Aircraft; N],
     index: Index<N>,
     counters: Counters,
-    known: KnownPlaces,
+    references: References,
+    recent: Recent,
+    nursery: Nursery,
+    mode_ac: ModeAc,
+    last_second_ms: u64,
 }
+
+/// RAM of the tracker of the receiver, bytes: the budget of docs/adr/0008 and the architecture.
+const MOST_BYTES: usize = 96 * 1024;
+const _: () = assert!(size_of::<Tracker<400>>() <= MOST_BYTES);
 
 impl<const N: usize> Tracker<N> {
     /// An empty table, all zeros.
@@ -25,47 +55,89 @@ impl<const N: usize> Tracker<N> {
             aircraft: [Aircraft::BLANK; N],
             index: Index::new(),
             counters: Counters::ZERO,
-            known: KnownPlaces {
-                receiver: None,
-                neighbour: None,
-            },
+            references: References::NONE,
+            recent: Recent::new(),
+            nursery: Nursery::new(),
+            mode_ac: ModeAc::new(),
+            last_second_ms: 0,
         }
     }
 
-    /// Tells where the receiver stands. With it, places too far to hear are refused, and surface positions are decoded before any
-    /// aircraft in the air has shown its place.
-    pub fn set_receiver(&mut self, receiver: Option<Position>) {
-        self.known.receiver = receiver;
+    /// Tells where the receiver stands.
+    pub fn set_rx_position(&mut self, rx: RxPosition) {
+        if self.references.rx != rx {
+            self.references.rx = rx;
+            self.references.named = None;
+        }
     }
 
-    /// Offers a message that was heard at `at_ms`.
-    pub fn on_frame(&mut self, message: &Message, at_ms: u64) -> Outcome {
-        let (outcome, place) = self.admit(message, at_ms);
+    #[cfg(test)]
+    pub(crate) fn references(&self) -> &References {
+        &self.references
+    }
+
+    /// Offers a frame and the message in it.
+    pub fn on_frame(&mut self, frame: &Frame, message: &Message, heard: Heard) -> Outcome {
+        if heard.at_ms.abs_diff(self.last_second_ms) > OWN_SECOND_MS {
+            self.each_second(heard.at_ms);
+        }
+        let (outcome, place) = self.admit(frame, message, &heard);
         self.counters.count(outcome);
         if let Some(place) = place {
             let aircraft = &mut self.aircraft[place];
-            if let Some(position) = aircraft.hear(message, &self.known, at_ms) {
+            let hearing = Hearing {
+                message,
+                heard,
+                references: &self.references,
+            };
+            if let Some(position) = aircraft.hear(&hearing) {
                 self.counters.count_position(position);
-                if position == PositionOutcome::Shown && aircraft.on_ground() == Some(false) {
-                    self.known.neighbour = aircraft.position(at_ms);
+                if position == PositionOutcome::Shown
+                    && aircraft.on_ground() == Some(false)
+                    && let Some(place) = aircraft.position(heard.at_ms)
+                {
+                    self.references.shown_in_the_air(place, heard.at_ms);
                 }
             }
         }
         outcome
     }
 
-    /// Ends a second: the fields and frames of the last second are those heard since the previous call, and aircraft silent for
+    /// Offers a Mode A/C reply.
+    pub fn on_mode_ac(&mut self, code: ModeACode) {
+        self.mode_ac.hear(code);
+    }
+
+    /// Ends a second: the fields and counts of the last second are those heard since the previous call, and aircraft silent for
     /// longer than [`TIMEOUT_MS`] end. Call it once a second, before the reports.
     pub fn each_second(&mut self, now_ms: u64) {
+        // No frame is heard longer than that after a second's end: whoever is tracked has been silent for too long, and the stamps may
+        // have gone round. A clock that has gone back begins anew.
+        let gap_ms = now_ms.abs_diff(self.last_second_ms);
+        let is_long = gap_ms > u64::from(TIMEOUT_MS) + OWN_SECOND_MS;
+        self.last_second_ms = now_ms;
         // From the end, because the last aircraft moves into the place of one that leaves.
         for place in (0..self.len()).rev() {
-            if self.aircraft[place].silent_ms(now_ms) > TIMEOUT_MS {
+            if is_long || self.aircraft[place].silent_ms(now_ms) > TIMEOUT_MS {
                 self.remove(place);
                 self.counters.timed_out = self.counters.timed_out.wrapping_add(1);
-            } else {
-                self.aircraft[place].second_ends(now_ms);
             }
         }
+        let aircraft = &mut self.aircraft[..self.index.len()];
+        let replies_of = |one: &Aircraft| Replies {
+            squawk: one.squawk(),
+            altitude: one.baro_altitude(now_ms),
+        };
+        self.mode_ac.second_ends(aircraft, replies_of, |one, count| {
+            one.counts_now.mode_ac = count;
+            one.second_ends(now_ms);
+        });
+        self.references.second_ends(aircraft.iter().map(|one| Candidate {
+            address: one.address(),
+            on_ground: one.on_ground(),
+            altitude_ft: one.baro_altitude(now_ms).map(|altitude| altitude.0),
+            place: one.position(now_ms),
+        }));
     }
 
     /// The tracked aircraft, in no particular order.
@@ -94,42 +166,78 @@ impl<const N: usize> Tracker<N> {
     }
 
     /// What becomes of a frame, and the place of its aircraft.
-    fn admit(&mut self, message: &Message, at_ms: u64) -> (Outcome, Option<usize>) {
+    fn admit(
+        &mut self,
+        frame: &Frame,
+        message: &Message,
+        heard: &Heard,
+    ) -> (Outcome, Option<usize>) {
         let address = match message.parity {
             Parity::Broken => return (Outcome::Broken, None),
             Parity::Unjudged => return (Outcome::NotTracked, None),
             Parity::Exact(address) => address,
             Parity::Interrogator { icao, .. } | Parity::Address(icao) => Address::Icao(icao),
         };
-        match self.place_of(address) {
-            Some(place) => (Outcome::Updated, Some(place)),
-            None if matches!(message.parity, Parity::Exact(_)) => {
-                (Outcome::Born, Some(self.bear(address, at_ms)))
-            }
-            None => (Outcome::UnknownAddress, None),
+        if matches!(address.bits(), 0 | 0xFF_FFFF) {
+            return (Outcome::NoAddress, None);
+        }
+        if self.recent.has_heard(frame, heard.at_ms) {
+            return (Outcome::Duplicate, None);
+        }
+        if let Some(place) = self.place_of(address) {
+            return (Outcome::Updated, Some(place));
+        }
+        let is_proof = is_proof(message, heard);
+        if !is_proof && !self.agrees(address, message, heard.at_ms) {
+            return (Outcome::UnknownAddress, None);
+        }
+        let credit_ms = credit_ms(matches!(message.df.number(), 17..=19), is_proof);
+        match self.bear(address, credit_ms, heard.at_ms) {
+            Some(place) => (Outcome::Born, Some(place)),
+            None => (Outcome::NoPlace, None),
         }
     }
 
-    fn place_of(&self, address: Address) -> Option<usize> {
-        self.index
-            .find(address, |place| self.aircraft[place].address == address)
+    /// Whether a weak frame agrees with an earlier one of the same address.
+    fn agrees(&mut self, address: Address, message: &Message, at_ms: u64) -> bool {
+        let word = Word::of(message);
+        let bits = packed(address);
+        if !self.nursery.agrees(bits, word, at_ms) {
+            return false;
+        }
+        let frame_bits = if message.df.is_long() { 112 } else { 56 };
+        word == Word::Clear
+            || !is_one_bit_from(bits, frame_bits, |other| {
+                self.place_of(Address::Icao(Icao(other))).is_some()
+            })
     }
 
-    /// Gives a new aircraft a place; the one silent for longest leaves when there is none.
-    fn bear(&mut self, address: Address, at_ms: u64) -> usize {
+    fn place_of(&self, address: Address) -> Option<usize> {
+        let packed = packed(address);
+        self.index
+            .find(address, |place| self.aircraft[place].packed_address == packed)
+    }
+
+    /// Gives a new aircraft a place. When there is none, the aircraft worth least leaves, if it is worth less than the new one by
+    /// [`LEAD_MS`].
+    fn bear(&mut self, address: Address, credit_ms: i32, at_ms: u64) -> Option<usize> {
         if self.len() == N {
-            let silent = |&place: &usize| self.aircraft[place].silent_ms(at_ms);
-            self.remove((0..N).max_by_key(silent).unwrap_or(0));
+            let worth = |place: usize| self.aircraft[place].worth_ms(at_ms);
+            let (least, place) = (0..N).map(|place| (worth(place), place)).min()?;
+            if least + LEAD_MS >= credit_ms {
+                return None;
+            }
+            self.remove(place);
             self.counters.displaced = self.counters.displaced.wrapping_add(1);
         }
         let place = self.index.push(address);
         self.aircraft[place] = Aircraft::new(address, at_ms);
-        place
+        Some(place)
     }
 
     fn remove(&mut self, place: usize) {
         let last = self.len() - 1;
-        let (leaving, moving) = (self.aircraft[place].address, self.aircraft[last].address);
+        let (leaving, moving) = (self.aircraft[place].address(), self.aircraft[last].address());
         self.index.remove(place, leaving, moving);
         self.aircraft[place] = self.aircraft[last];
     }
