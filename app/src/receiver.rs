@@ -22,7 +22,7 @@ use hal::{timer, uart::CommsUart, usb::UsbConsole, watchdog};
 use heapless::spsc::Consumer;
 use mode_s::Message;
 use report::csbee;
-use tracker::Tracker;
+use tracker::{Heard, Tracker};
 
 /// Aircraft tracked at once.
 pub const AIRCRAFT: usize = 400;
@@ -79,8 +79,13 @@ impl Receiver {
             heard();
             let message = Message::decode(&raw_frame.frame);
             self.decode.count(message.parity);
-            self.tracker
-                .on_frame(&message, raw_frame.arrival / TICKS_PER_MS);
+            let heard = Heard {
+                at_ms: raw_frame.arrival / TICKS_PER_MS,
+                level_cdbm: raw_frame.level,
+                quality_cdb: None,
+                is_repaired: raw_frame.repaired != 0,
+            };
+            self.tracker.on_frame(&raw_frame.frame, &message, heard);
             self.console_reports.frame(&mut self.console, &raw_frame);
             self.comms_reports.frame(&mut self.comms, &raw_frame);
         }

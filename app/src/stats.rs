@@ -19,7 +19,7 @@
 //! | QUEUE offered = queued + dropped |
 //! | QUEUE queued = DECODE offered + QUEUE waiting |
 //! | DECODE offered = exact + interrogator + address + broken + unjudged = TRACKER offered |
-//! | TRACKER offered = born + updated + unknown_address + broken + not_tracked |
+//! | TRACKER offered = born + updated + duplicate + unknown_address + no_address + no_place + broken + not_tracked |
 //! | each port: offered = sent + dropped |
 //!
 //! All counters are 32 bits and wrap.
@@ -157,7 +157,10 @@ impl Stats<'_> {
                 ("offered", tracker.offered),
                 ("born", tracker.born),
                 ("updated", tracker.updated),
+                ("duplicate", tracker.duplicate),
                 ("unknown_address", tracker.unknown_address),
+                ("no_address", tracker.no_address),
+                ("no_place", tracker.no_place),
                 ("broken", tracker.broken),
                 ("not_tracked", tracker.not_tracked),
                 ("positions", tracker.positions),

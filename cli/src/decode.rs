@@ -3,8 +3,8 @@
 use std::io::{BufRead, BufWriter, Write};
 
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use mode_s::{Frame, Message};
-use tracker::Tracker;
+use mode_s::{Frame, Icao, Message, Position};
+use tracker::{Heard, RxPosition, Tracker};
 
 use crate::{Failure, json};
 
@@ -23,6 +23,17 @@ pub fn command() -> Command {
         )
         .after_long_help(format!("Fields, only those that the frame has. Where pyModeS 3 has a field its name and unit are used.\n\n{}", json::FIELDS))
         .arg(Arg::new("file").value_name("FILE").help("File to read [default: standard input]"))
+        .arg(
+            Arg::new("rx-position")
+                .long("rx-position")
+                .value_name("PLACE")
+                .value_parser(rx_position)
+                .allow_hyphen_values(true)
+                .help(
+                    "Where the receiver stands: LAT,LON in degrees, `lowest` (about where the lowest aircraft is) or an ICAO address \
+                     (aboard that aircraft) [default: nobody knows]",
+                ),
+        )
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON lines (the default and only format)"))
 }
 
@@ -40,6 +51,9 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
     };
     let mut out = BufWriter::new(std::io::stdout().lock());
     let mut tracking = Box::new(Tracker::<AIRCRAFT>::new());
+    if let Some(&rx) = matches.get_one::<RxPosition>("rx-position") {
+        tracking.set_rx_position(rx);
+    }
     let mut second = None;
     let mut bad: Option<(u64, String)> = None;
     let (mut refused, mut lines) = (0, 0);
@@ -61,7 +75,9 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
                         tracking.each_second(ms);
                     }
                 }
-                let tracked = now_ms.map(|ms| json::Tracked::hear(&mut tracking, &message, ms));
+                let heard = now_ms.map(Heard::at);
+                let tracked = heard
+                    .map(|heard| json::Tracked::hear(&mut tracking, &frame, &message, heard));
                 let object = json::object(&hex, seconds, &message, tracked.as_ref());
                 writeln!(out, "{object}")?;
             }
@@ -82,6 +98,28 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
             reason,
         }),
     }
+}
+
+/// Where the receiver stands.
+fn rx_position(text: &str) -> Result<RxPosition, String> {
+    if text.eq_ignore_ascii_case("lowest") {
+        return Ok(RxPosition::Lowest);
+    }
+    let Some((latitude, longitude)) = text.split_once(',') else {
+        let is_address = text.len() == 6 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
+        return match u32::from_str_radix(text, 16) {
+            Ok(address) if is_address => Ok(RxPosition::Icao(Icao(address))),
+            _ => Err("neither LAT,LON nor `lowest` nor six hexadecimal digits".into()),
+        };
+    };
+    let angle = |text: &str, most: f64| match text.trim().parse::<f64>() {
+        Ok(degrees) if degrees.abs() <= most => Ok((degrees * 1e7).round() as i32),
+        _ => Err(format!("`{text}` is not within {most} degrees")),
+    };
+    Ok(RxPosition::Fixed(Position {
+        latitude: angle(latitude, 90.0)?,
+        longitude: angle(longitude, 180.0)?,
+    }))
 }
 
 /// A line's time, hex digits and frame.
@@ -140,6 +178,20 @@ mod tests {
             parse("1.5,8d4ca7e858b9838206ba422bbd7b").unwrap().0,
             Some(1.5)
         );
+    }
+
+    #[test]
+    fn places_of_the_receiver() {
+        let place = Position {
+            latitude: 519_900_000,
+            longitude: -43_750_000,
+        };
+        assert_eq!(rx_position("51.99,-4.375"), Ok(RxPosition::Fixed(place)));
+        assert_eq!(rx_position("LOWEST"), Ok(RxPosition::Lowest));
+        assert_eq!(rx_position("4d2023"), Ok(RxPosition::Icao(Icao(0x4D2023))));
+        for bad in ["91,0", "0,181", "4d202", "+d2023", "x,y", "nan,0", ""] {
+            assert!(rx_position(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

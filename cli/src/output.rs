@@ -68,6 +68,14 @@ impl Heard {
     }
 }
 
+/// What the tracker is told of a frame's reception.
+fn reception(heard: &Heard, at_ms: u64) -> tracker::Heard {
+    tracker::Heard {
+        is_repaired: heard.repaired != 0,
+        ..tracker::Heard::at(at_ms)
+    }
+}
+
 /// Prints frames in one form.
 pub struct Printer<W: Write> {
     out: W,
@@ -120,7 +128,12 @@ impl<W: Write> Printer<W> {
                 let message = Message::decode(&heard.frame);
                 let ms = (ns.max(0) / 1_000_000) as u64;
                 self.seconds_until(ms)?;
-                let tracked = Tracked::hear(&mut self.tracking, &message, ms);
+                let tracked = Tracked::hear(
+                    &mut self.tracking,
+                    &heard.frame,
+                    &message,
+                    reception(heard, ms),
+                );
                 self.frames_this_second += 1;
                 if self.form == Form::Csbee {
                     return Ok(());

@@ -156,7 +156,10 @@ fn the_counters_of_every_stage_balance() {
             &[
                 "born",
                 "updated",
+                "duplicate",
                 "unknown_address",
+                "no_address",
+                "no_place",
                 "broken",
                 "not_tracked"
             ]

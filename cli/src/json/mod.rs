@@ -16,11 +16,11 @@ mod squitter;
 mod status;
 
 use mode_s::{
-    Address, AltitudeFt, Body, CentiDegrees, Inference, Interrogator, Known, Me, Message,
+    Address, AltitudeFt, Body, CentiDegrees, Frame, Inference, Interrogator, Known, Me, Message,
     ModeACode, NicSupplements, Parity, infer, quality,
 };
 use serde_json::{Map, Value};
-use tracker::{Aircraft, Tracker};
+use tracker::{Aircraft, Heard, Tracker};
 
 pub use help::FIELDS;
 
@@ -67,16 +67,18 @@ pub struct Tracked<'a> {
 }
 
 impl<'a> Tracked<'a> {
-    /// Lets the tracker hear a message.
+    /// Lets the tracker hear a frame.
     pub fn hear<const N: usize>(
         tracking: &'a mut Tracker<N>,
+        frame: &Frame,
         message: &Message,
-        now_ms: u64,
+        heard: Heard,
     ) -> Tracked<'a> {
+        let now_ms = heard.at_ms;
         let address = message.address();
         let before = address.and_then(|address| tracking.find(address));
         let known = before.map_or(Known::NOTHING, |aircraft| aircraft.known(now_ms));
-        tracking.on_frame(message, now_ms);
+        tracking.on_frame(frame, message, heard);
         Tracked {
             known,
             aircraft: address.and_then(|address| tracking.find(address)),

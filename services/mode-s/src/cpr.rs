@@ -180,3 +180,7 @@ fn wrapped_longitude(longitude: i64) -> i32 {
 #[cfg(test)]
 #[path = "cpr_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "cpr_reference_tests.rs"]
+mod reference_tests;

@@ -49,7 +49,19 @@ mod tests {
     fn ac13(ModeACode(code): ModeACode) -> Ac13 {
         // C1 A1 C2 A2 C4 A4 M B1 Q B2 D2 B4 D4 by their bits in a Mode A code.
         let order = [
-            Some(3), Some(9), Some(4), Some(10), Some(5), Some(11), None, Some(6), None, Some(7), Some(1), Some(8), Some(2),
+            Some(3),
+            Some(9),
+            Some(4),
+            Some(10),
+            Some(5),
+            Some(11),
+            None,
+            Some(6),
+            None,
+            Some(7),
+            Some(1),
+            Some(8),
+            Some(2),
         ];
         Ac13(order.iter().fold(0, |field, bit| {
             field << 1 | bit.map_or(0, |bit: u32| code >> bit & 1)

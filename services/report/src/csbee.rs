@@ -8,7 +8,7 @@
 //! LAT and LON degrees with five decimals, the rest decimal integers in the units of the document. An unknown field is empty.
 //! CRC is CRC-16/IBM-3740 with its bytes swapped, over `#` up to and including the last comma, four hexadecimal digits.
 //!
-//! SIGS and SIGQ (not measured yet) and the ACFPS of an aircraft (Mode A/C is not received) are always empty; SYSINFO is empty until
+//! SIGS and SIGQ are empty until a level was measured; the ACFPS of an aircraft is always empty (Mode A/C is not received). SYSINFO is empty until
 //! a position, a velocity or a status message has told something of it; a part of it that is not known reads 0. TRACK and VELH are over the ground only: an
 //! aircraft that sends heading and airspeed leaves them empty.
 //!
@@ -18,7 +18,7 @@ use crate::Full;
 use crate::ecat::csbee_ecat;
 use crate::text::Text;
 use crc::{CRC_16_IBM_3740, Crc, Table};
-use tracker::Aircraft;
+use tracker::{Aircraft, Field};
 
 /// A slice that holds any aircraft or statistics line.
 pub const MAX_LINE: usize = 128;
@@ -26,10 +26,11 @@ pub const MAX_LINE: usize = 128;
 /// One table of 512 bytes.
 static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_3740);
 
-/// FLAGS bits, the document's 4.1.1.1. IS_MILITARY (bit 2) is never set: DF19 is not decoded.
+/// FLAGS bits, the document's 4.1.1.1.
 mod flag {
     pub const IS_AIRBORNE: u32 = 1 << 0;
     pub const POSITION_VALID: u32 = 1 << 1;
+    pub const IS_MILITARY: u32 = 1 << 2;
     pub const IS_CLASS_B2_GROUND_VEHICLE: u32 = 1 << 3;
     pub const HAS_1090_ES_IN: u32 = 1 << 4;
     pub const HAS_UAT_IN: u32 = 1 << 5;
@@ -40,9 +41,19 @@ mod flag {
     pub const IDENT: u32 = 1 << 10;
     pub const ALERT: u32 = 1 << 11;
     pub const TCAS_RA: u32 = 1 << 12;
-    /// UPDATED_BARO_ALTITUDE; the five others follow in the order of [`tracker::Updated`].
+    /// The first of the UPDATED bits.
     pub const FIRST_UPDATED: u32 = 17;
 }
+
+/// Fields whose update has a bit in FLAGS, from [`flag::FIRST_UPDATED`] up.
+const UPDATES: [Field; 6] = [
+    Field::BaroAltitude,
+    Field::GnssAltitude,
+    Field::Position,
+    Field::Track,
+    Field::GroundSpeed,
+    Field::VerticalRate,
+];
 
 /// Lowest bits of SYSINFO's parts, the document's 4.1.1.3; the low twelve bits are NICNAC of other protocols.
 mod part {
@@ -109,9 +120,12 @@ pub fn aircraft(aircraft: &Aircraft, now_ms: u64, out: &mut [u8]) -> Result<usiz
     decimal_field(&mut line, speed.map(knots))?;
     let rate = aircraft.vertical_rate(now_ms);
     decimal_field(&mut line, rate.map(|rate| i32::from(rate.feet_per_minute)))?;
-    // SIGS, SIGQ, ACFPS
-    line.bytes(b",,,")?;
-    decimal_field(&mut line, Some(i32::from(aircraft.frames_last_second())))?;
+    decimal_field(&mut line, aircraft.level_cdbm().map(whole_decibels))?;
+    decimal_field(&mut line, aircraft.quality_cdb().map(whole_decibels))?;
+    // ACFPS
+    line.byte(b',')?;
+    let frames = aircraft.counts_last_second().mode_s;
+    decimal_field(&mut line, Some(i32::from(frames)))?;
     line.byte(b',')?;
     if let Some(sysinfo) = sysinfo(aircraft, now_ms) {
         line.hex(sysinfo, 1)?;
@@ -153,6 +167,11 @@ fn knots(eighths: u16) -> i32 {
     (i32::from(eighths) + 4) / 8
 }
 
+/// Whole decibels of hundredths, rounded.
+fn whole_decibels(hundredths: i16) -> i32 {
+    (i32::from(hundredths) + 50).div_euclid(100)
+}
+
 /// A comma and a decimal integer.
 fn decimal_field(line: &mut Text<'_>, value: Option<i32>) -> Result<(), Full> {
     line.byte(b',')?;
@@ -174,7 +193,12 @@ fn degrees_field(line: &mut Text<'_>, angle: Option<i32>) -> Result<(), Full> {
 }
 
 fn flags(aircraft: &Aircraft, now_ms: u64) -> u32 {
-    let mut flags = u32::from(aircraft.updated_last_second().bits()) << flag::FIRST_UPDATED;
+    let updated = aircraft.updated_last_second();
+    let mut flags = UPDATES
+        .iter()
+        .rev()
+        .fold(0, |bits, &field| bits << 1 | u32::from(updated.has(field)))
+        << flag::FIRST_UPDATED;
     let status = aircraft.status(now_ms).unwrap_or_default();
     for (is_set, flag) in [
         (status.b2_low(), flag::IS_CLASS_B2_GROUND_VEHICLE),
@@ -188,6 +212,7 @@ fn flags(aircraft: &Aircraft, now_ms: u64) -> u32 {
         ),
         (status.magnetic_heading(), flag::HEADING_USES_MAGNETIC_NORTH),
         (aircraft.tcas_ra(now_ms), flag::TCAS_RA),
+        (aircraft.is_military(), flag::IS_MILITARY),
         (aircraft.on_ground() == Some(false), flag::IS_AIRBORNE),
         (aircraft.position(now_ms).is_some(), flag::POSITION_VALID),
         (aircraft.ident(now_ms), flag::IDENT),

@@ -4,20 +4,25 @@ use super::*;
 use mode_s::{Frame, Message};
 use std::string::String;
 use std::vec::Vec;
-use tracker::Tracker;
+use tracker::{Heard, Tracker};
 
-fn message(hex: &str) -> Message {
+fn frame(hex: &str) -> Frame {
     let bytes: Vec<u8> = (0..hex.len() / 2)
         .map(|i| u8::from_str_radix(&hex[2 * i..2 * i + 2], 16).unwrap())
         .collect();
-    Message::decode(&Frame::from_bytes(&bytes).unwrap())
+    Frame::from_bytes(&bytes).unwrap()
+}
+
+fn hear(tracker: &mut Tracker<4>, hex: &str, heard: Heard) {
+    let frame = frame(hex);
+    tracker.on_frame(&frame, &Message::decode(&frame), heard);
 }
 
 /// The only aircraft's line, after one second with these messages, without CRC and line end.
 fn line_after(messages: &[&str]) -> String {
     let mut tracker = Tracker::<4>::new();
     for (index, hex) in messages.iter().enumerate() {
-        tracker.on_frame(&message(hex), 10 * index as u64);
+        hear(&mut tracker, hex, Heard::at(10 * index as u64));
     }
     tracker.each_second(1000);
     let mut out = [0; MAX_LINE];
@@ -109,7 +114,7 @@ fn position_appears_after_two_pairs_with_five_decimals() {
 #[test]
 fn update_bits_last_one_interval() {
     let mut tracker = Tracker::<4>::new();
-    tracker.on_frame(&message("8D485020994409940838175B284F"), 0);
+    hear(&mut tracker, "8D485020994409940838175B284F", Heard::at(0));
     tracker.each_second(1000);
     tracker.each_second(2000);
     let mut out = [0; MAX_LINE];
@@ -119,6 +124,24 @@ fn update_bits_last_one_interval() {
         checked(&out[..length]),
         "#A:485020,1,,,,,,,,183,159,-832,,,,0,0,"
     );
+}
+
+#[test]
+fn level_and_quality_are_whole_decibels() {
+    let mut tracker = Tracker::<4>::new();
+    let heard = Heard {
+        level_cdbm: Some(-7_449),
+        quality_cdb: Some(1_250),
+        ..Heard::at(0)
+    };
+    hear(&mut tracker, "8D485020994409940838175B284F", heard);
+    tracker.each_second(1000);
+    let mut out = [0; MAX_LINE];
+    let only = tracker.aircraft().next().unwrap();
+    let length = aircraft(only, 1000, &mut out).unwrap();
+    let line = checked(&out[..length]);
+    let fields: Vec<&str> = line.split(',').collect();
+    assert_eq!(fields[12..14], ["-74", "13"]);
 }
 
 #[test]

@@ -7,13 +7,13 @@
 
 use crate::counts::Counts;
 use crate::field::{Field, Freshness};
+use crate::flags::{Flag, Flags};
 use crate::place::Places;
 use crate::signal::Signal;
 use crate::stamp::Stamp;
 use crate::status::{Airframe, Status};
-use crate::flags::{Flag, Flags};
-use mode_s::{Address, AltitudeFt, Callsign, Category, CentiDegrees, EmergencyState, Icao};
 use mode_s::ModeACode;
+use mode_s::{Address, AltitudeFt, Callsign, Category, CentiDegrees, EmergencyState, Icao};
 
 /// Bytes of an aircraft, at most.
 const MOST_BYTES: usize = 232;
@@ -174,7 +174,10 @@ impl Aircraft {
         let credit = if self.places.shown(now_ms).is_some() {
             20_000
         } else {
-            credit_ms(self.flags.has(Flag::HasSquitters), self.flags.has(Flag::Confirmed))
+            credit_ms(
+                self.flags.has(Flag::HasSquitters),
+                self.flags.has(Flag::Confirmed),
+            )
         };
         credit - self.silent_ms(now_ms) as i32
     }

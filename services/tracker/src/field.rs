@@ -259,7 +259,11 @@ mod tests {
                 let now_ms = second * 1_000;
                 freshness.second_ends(now_ms);
                 let expected = now_ms <= 61_000 || field.life_ms().is_none();
-                assert_eq!(freshness.is_alive(field, now_ms), expected, "{field:?} {second}");
+                assert_eq!(
+                    freshness.is_alive(field, now_ms),
+                    expected,
+                    "{field:?} {second}"
+                );
             }
         }
     }

@@ -25,6 +25,7 @@ use crate::counters::PositionOutcome;
 use crate::field::Field;
 use crate::flags::Flag;
 use crate::place::Surroundings;
+use crate::reach::Motion;
 use crate::reference::References;
 use crate::signal::Heard;
 use crate::stamp::Stamp;
@@ -32,8 +33,8 @@ use mode_s::{AltitudeFt, Body, Cpr, FlightStatus, Message, ModeACode, Origin, Pa
 
 /// Most time between pressure altitude and GNSS-baro difference that are added, ms. Within it a steep climb changes neither much.
 const DIFFERENCE_LIFE_MS: u32 = 10_000;
-/// How long a ground speed limits how far a position may have moved, ms. Later the aircraft may have another.
-const SPEED_LIFE_MS: u32 = 10_000;
+/// How long speed and track limit where a position may have moved, ms. Later the aircraft may have others.
+const MOTION_LIFE_MS: u32 = 10_000;
 /// How long an aircraft's own squitters keep those of ground stations out, ms: ten of its positions at the slowest rate of a moving aircraft.
 const DIRECT_LIFE_MS: u32 = 20_000;
 
@@ -58,9 +59,7 @@ fn source(origin: Origin) -> PositionSource {
 impl Aircraft {
     /// Takes a message of this aircraft; tells what became of an encoded position in it.
     pub(crate) fn hear(&mut self, hearing: &Hearing<'_>) -> Option<PositionOutcome> {
-        let Hearing {
-            message, heard, ..
-        } = hearing;
+        let Hearing { message, heard, .. } = hearing;
         let at_ms = heard.at_ms;
         self.heard_at = Stamp::at(at_ms);
         self.signal.hear(heard);
@@ -128,11 +127,13 @@ impl Aircraft {
         hearing: &Hearing<'_>,
     ) -> PositionOutcome {
         let at_ms = hearing.heard.at_ms;
-        let is_fresh = self
-            .freshness
-            .is_within(Field::GroundSpeed, SPEED_LIFE_MS, at_ms);
+        let is_fresh = |field| self.freshness.is_within(field, MOTION_LIFE_MS, at_ms);
         let around = Surroundings {
-            ground_speed_eighths: is_fresh.then_some(self.ground_speed_eighths),
+            motion: Motion {
+                ground_speed_eighths: is_fresh(Field::GroundSpeed)
+                    .then_some(self.ground_speed_eighths),
+                track: is_fresh(Field::Track).then_some(self.track),
+            },
             is_repaired: hearing.heard.is_repaired,
             references: hearing.references,
         };
@@ -191,10 +192,7 @@ impl Aircraft {
 
     /// GNSS height from pressure altitude and difference, where both are recent.
     pub(crate) fn add_difference(&mut self, at_ms: u64) {
-        let is_recent = |field| {
-            self.freshness
-                .is_within(field, DIFFERENCE_LIFE_MS, at_ms)
-        };
+        let is_recent = |field| self.freshness.is_within(field, DIFFERENCE_LIFE_MS, at_ms);
         if is_recent(Field::BaroAltitude) && is_recent(Field::GnssMinusBaro) {
             let AltitudeFt(baro) = self.baro_altitude;
             self.hear_gnss(AltitudeFt(baro + i32::from(self.gnss_minus_baro_ft)), at_ms);

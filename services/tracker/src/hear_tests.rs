@@ -170,7 +170,10 @@ fn target_state_tells_what_is_selected() {
     assert_eq!(aircraft.selected_altitude_mcp(0), Some(AltitudeFt(16_992)));
     assert_eq!(aircraft.selected_altitude_fms(0), None);
     assert_eq!(aircraft.pressure_setting_tenths(0), Some(10_128));
-    assert_eq!(aircraft.selected_heading(0).map(|h| h.whole_degrees()), Some(67));
+    assert_eq!(
+        aircraft.selected_heading(0).map(|h| h.whole_degrees()),
+        Some(67)
+    );
     let modes = aircraft.modes(0).unwrap();
     assert!(modes.autopilot && modes.vnav && modes.lnav && !modes.approach);
 }

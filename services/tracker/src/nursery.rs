@@ -41,7 +41,10 @@ pub(crate) enum Word {
 impl Word {
     /// What a message says that may stand beside another weak one.
     pub(crate) fn of(message: &Message) -> Word {
-        if matches!(message.parity, Parity::Interrogator { .. } | Parity::Exact(_)) {
+        if matches!(
+            message.parity,
+            Parity::Interrogator { .. } | Parity::Exact(_)
+        ) {
             return Word::Clear;
         }
         match message.body {
@@ -112,7 +115,11 @@ impl Nursery {
         }
         // The first free place, else the oldest.
         let oldest = self.0.iter_mut().max_by_key(|entry| {
-            if is_alive(entry) { age_ms(entry) } else { u32::MAX }
+            if is_alive(entry) {
+                age_ms(entry)
+            } else {
+                u32::MAX
+            }
         });
         if let Some(entry) = oldest {
             entry.address = address;
@@ -161,7 +168,7 @@ pub(crate) fn is_one_bit_from(address: u32, bits: u32, is_known: impl Fn(u32) ->
     (0..bits).any(|_| {
         let found = is_known(address ^ residual);
         let carry = residual >> 23;
-        residual = (residual << 1 ^ carry * GENERATOR) & 0xFF_FFFF;
+        residual = ((residual << 1) ^ (carry * GENERATOR)) & 0xFF_FFFF;
         found
     })
 }
@@ -195,8 +202,15 @@ mod tests {
     #[test]
     fn altitude_and_code_are_both_kept() {
         let mut nursery = Nursery::new();
-        let words = [Word::Altitude(10_000), Word::Squawk(0o1234), Word::Altitude(9_975)];
-        assert_eq!(words.map(|word| nursery.agrees(7, word, 0)), [false, false, true]);
+        let words = [
+            Word::Altitude(10_000),
+            Word::Squawk(0o1234),
+            Word::Altitude(9_975),
+        ];
+        assert_eq!(
+            words.map(|word| nursery.agrees(7, word, 0)),
+            [false, false, true]
+        );
         // What has agreed is forgotten.
         assert!(!nursery.agrees(7, Word::Clear, 0));
     }
@@ -219,7 +233,10 @@ mod tests {
             let mut wrong = frame;
             wrong[bit / 8] ^= 0x80 >> (bit % 8);
             let ghost = crc24::residual(&wrong);
-            assert!(is_one_bit_from(ghost, 56, |address| address == right), "bit {bit}");
+            assert!(
+                is_one_bit_from(ghost, 56, |address| address == right),
+                "bit {bit}"
+            );
             assert!(!is_one_bit_from(ghost, 56, |address| address == 0x4B18FF));
         }
     }

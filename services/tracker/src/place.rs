@@ -21,7 +21,7 @@
 //! a wrong zone could not be told from a flight.
 
 use crate::counters::PositionOutcome;
-use crate::reach::{Reach, is_within};
+use crate::reach::{Motion, Reach, is_within};
 use crate::reference::References;
 use crate::stamp::Stamp;
 use mode_s::cpr::{global, local};
@@ -36,7 +36,7 @@ const SURFACE_PAIR_MS: u32 = 25_000;
 /// Implausible positions in a row after which the shown place is given up.
 const REFUSALS_TO_GIVE_UP: u8 = 4;
 /// Farthest an aircraft can be heard, metres: 400 NM, beyond the radio horizon of any airliner.
-const RECEPTION_RANGE_M: u64 = 741_000;
+const RECEPTION_RANGE_M: i64 = 741_000;
 
 /// Still to agree with a candidate: an even message.
 const EVEN: u8 = 1;
@@ -104,8 +104,8 @@ pub(crate) struct Places {
 
 /// What is known beside the encoded position itself.
 pub(crate) struct Surroundings<'a> {
-    /// Ground speed, eighths of a knot, where one was told lately.
-    pub ground_speed_eighths: Option<u16>,
+    /// What was told of the aircraft's motion lately.
+    pub motion: Motion,
     /// The frame has repaired bits.
     pub is_repaired: bool,
     /// Places that do not depend on the aircraft.
@@ -146,7 +146,7 @@ impl Places {
     ) -> PositionOutcome {
         let reach = |since: Stamp| {
             let age_ms = since.age_ms(at_ms).unwrap_or(u32::MAX);
-            Reach::of(cpr.kind, around.ground_speed_eighths, around.is_repaired, age_ms)
+            Reach::of(cpr.kind, around.motion, around.is_repaired, age_ms)
         };
         if self.candidate_at != Stamp::NEVER {
             let reach = reach(self.candidate_at);
@@ -172,8 +172,8 @@ impl Places {
 
     /// A candidate is known: does this message agree with it?
     fn confirm(&mut self, cpr: Cpr, reach: Reach, at_ms: u64) -> PositionOutcome {
-        let Some(place) = local(cpr, self.candidate)
-            .filter(|&place| is_within(self.candidate, place, reach.metres()))
+        let Some(place) =
+            local(cpr, self.candidate).filter(|&place| reach.joins(self.candidate, place))
         else {
             self.candidate_at = Stamp::NEVER;
             return self.refuse(cpr, at_ms);
@@ -192,14 +192,8 @@ impl Places {
     }
 
     /// A place is shown: has the aircraft flown on from there?
-    fn follow(
-        &mut self,
-        last: Position,
-        cpr: Cpr,
-        reach: Reach,
-        at_ms: u64,
-    ) -> PositionOutcome {
-        match local(cpr, last).filter(|&place| is_within(last, place, reach.metres())) {
+    fn follow(&mut self, last: Position, cpr: Cpr, reach: Reach, at_ms: u64) -> PositionOutcome {
+        match local(cpr, last).filter(|&place| reach.joins(last, place)) {
             Some(place) if reach.tells_zones() => self.show(place, at_ms),
             Some(place) => self.suppose(place, EITHER, at_ms),
             None => self.refuse(cpr, at_ms),
@@ -217,10 +211,13 @@ impl Places {
             CprKind::Airborne => AIRBORNE_PAIR_MS,
             CprKind::Surface => SURFACE_PAIR_MS,
         };
-        let Some(apart_ms) = other_at.age_ms(at_ms).filter(|&apart_ms| apart_ms <= pair_ms) else {
+        let Some(apart_ms) = other_at
+            .age_ms(at_ms)
+            .filter(|&apart_ms| apart_ms <= pair_ms)
+        else {
             return PositionOutcome::Waiting;
         };
-        let reach = Reach::of(cpr.kind, around.ground_speed_eighths, around.is_repaired, apart_ms);
+        let reach = Reach::of(cpr.kind, around.motion, around.is_repaired, apart_ms);
         if other.kind != cpr.kind || !reach.tells_zones() {
             return PositionOutcome::Waiting;
         }
@@ -233,7 +230,7 @@ impl Places {
         let Some(place) = global(other, cpr, reference) else {
             return PositionOutcome::Waiting;
         };
-        let joins = |before| is_within(before, place, reach.metres());
+        let joins = |before| reach.joins(before, place);
         let hears = |receiver| is_within(receiver, place, RECEPTION_RANGE_M);
         if !local(other, place).is_some_and(joins)
             || !around.references.receiver().is_none_or(hears)

@@ -12,7 +12,10 @@ const NOWHERE: Surroundings<'_> = beside(&NOTHING_KNOWN);
 
 const fn beside(known: &References) -> Surroundings<'_> {
     Surroundings {
-        ground_speed_eighths: None,
+        motion: Motion {
+            ground_speed_eighths: None,
+            track: None,
+        },
         is_repaired: false,
         references: known,
     }
@@ -97,7 +100,10 @@ fn a_fast_aircraft_needs_its_halves_closer_together() {
     let here = at(52.1, 4.3);
     for (apart_ms, is_pair) in [(5_000, true), (6_000, false)] {
         let around = Surroundings {
-            ground_speed_eighths: Some(1_500 * 8),
+            motion: Motion {
+                ground_speed_eighths: Some(1_500 * 8),
+                track: None,
+            },
             ..NOWHERE
         };
         let mut places = Places::NONE;

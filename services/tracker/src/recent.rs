@@ -103,7 +103,11 @@ mod tests {
         for bit in 8..112 {
             let mut other = bytes;
             other[bit / 8] ^= 0x80 >> (bit % 8);
-            assert_ne!(content(&Frame::from_bytes(&other).unwrap()), whole, "bit {bit}");
+            assert_ne!(
+                content(&Frame::from_bytes(&other).unwrap()),
+                whole,
+                "bit {bit}"
+            );
         }
     }
 }

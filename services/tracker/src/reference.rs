@@ -14,7 +14,9 @@
 use mode_s::{Address, Icao, Position};
 
 /// Where the receiver stands.
+// Its own discriminant, so that `None` is all zeros and a static tracker costs no flash.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
 pub enum RxPosition {
     /// Nobody says.
     #[default]

@@ -48,7 +48,10 @@ impl Stamp {
     /// Keeps the age of an old stamp from going round: older than 200 s stays 200 s.
     pub(crate) fn hold(&mut self, now_ms: u64) {
         const HELD_MS: u64 = 200_000;
-        if self.age_ms(now_ms).is_some_and(|age| u64::from(age) > HELD_MS) {
+        if self
+            .age_ms(now_ms)
+            .is_some_and(|age| u64::from(age) > HELD_MS)
+        {
             *self = Stamp::at(now_ms.wrapping_sub(HELD_MS));
         }
     }

@@ -107,10 +107,18 @@ fn an_advisory_lasts_until_it_is_terminated() {
     let mut tracker = Tracker::<4>::new();
     hear(&mut tracker, &squitter([0xE2, 0x80, 0, 0, 0, 0, 0]), 0);
     assert!(airliner(&tracker).tcas_ra(0));
-    hear(&mut tracker, &squitter([0xE2, 0x80, 0, 1 << 5, 0, 0, 0]), 800);
+    hear(
+        &mut tracker,
+        &squitter([0xE2, 0x80, 0, 1 << 5, 0, 0, 0]),
+        800,
+    );
     assert!(!airliner(&tracker).tcas_ra(800));
     // Bit 27 of an operational status, and one without.
-    hear(&mut tracker, &squitter([0xF8, 0, 0, 1 << 5, 0, 2 << 5, 0]), 1_000);
+    hear(
+        &mut tracker,
+        &squitter([0xF8, 0, 0, 1 << 5, 0, 2 << 5, 0]),
+        1_000,
+    );
     assert!(airliner(&tracker).tcas_ra(1_000));
     hear(&mut tracker, &frame(IN_THE_AIR), 2_000);
     assert!(!airliner(&tracker).tcas_ra(2_000));
@@ -119,7 +127,11 @@ fn an_advisory_lasts_until_it_is_terminated() {
 #[test]
 fn the_ident_switch_and_the_squawk_of_an_emergency_status() {
     let mut tracker = Tracker::<4>::new();
-    hear(&mut tracker, &squitter([0xF9, 0, 0, 1 << 4, 0, 2 << 5, 0]), 0);
+    hear(
+        &mut tracker,
+        &squitter([0xF9, 0, 0, 1 << 4, 0, 2 << 5, 0]),
+        0,
+    );
     assert!(airliner(&tracker).ident(0));
     hear(&mut tracker, &frame(ON_THE_SURFACE), 10);
     assert!(!airliner(&tracker).ident(10));

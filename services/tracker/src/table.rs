@@ -128,16 +128,18 @@ impl<const N: usize> Tracker<N> {
             squawk: one.squawk(),
             altitude: one.baro_altitude(now_ms),
         };
-        self.mode_ac.second_ends(aircraft, replies_of, |one, count| {
-            one.counts_now.mode_ac = count;
-            one.second_ends(now_ms);
-        });
-        self.references.second_ends(aircraft.iter().map(|one| Candidate {
-            address: one.address(),
-            on_ground: one.on_ground(),
-            altitude_ft: one.baro_altitude(now_ms).map(|altitude| altitude.0),
-            place: one.position(now_ms),
-        }));
+        self.mode_ac
+            .second_ends(aircraft, replies_of, |one, count| {
+                one.counts_now.mode_ac = count;
+                one.second_ends(now_ms);
+            });
+        self.references
+            .second_ends(aircraft.iter().map(|one| Candidate {
+                address: one.address(),
+                on_ground: one.on_ground(),
+                altitude_ft: one.baro_altitude(now_ms).map(|altitude| altitude.0),
+                place: one.position(now_ms),
+            }));
     }
 
     /// The tracked aircraft, in no particular order.
@@ -214,8 +216,9 @@ impl<const N: usize> Tracker<N> {
 
     fn place_of(&self, address: Address) -> Option<usize> {
         let packed = packed(address);
-        self.index
-            .find(address, |place| self.aircraft[place].packed_address == packed)
+        self.index.find(address, |place| {
+            self.aircraft[place].packed_address == packed
+        })
     }
 
     /// Gives a new aircraft a place. When there is none, the aircraft worth least leaves, if it is worth less than the new one by
@@ -237,7 +240,10 @@ impl<const N: usize> Tracker<N> {
 
     fn remove(&mut self, place: usize) {
         let last = self.len() - 1;
-        let (leaving, moving) = (self.aircraft[place].address(), self.aircraft[last].address());
+        let (leaving, moving) = (
+            self.aircraft[place].address(),
+            self.aircraft[last].address(),
+        );
         self.index.remove(place, leaving, moving);
         self.aircraft[place] = self.aircraft[last];
     }

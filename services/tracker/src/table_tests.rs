@@ -41,16 +41,44 @@ fn an_exact_parity_bears_an_aircraft_and_any_updates_it() {
 #[test]
 fn two_weak_frames_that_agree_bear_an_aircraft() {
     for (first, second, outcome) in [
-        (coded_all_call(0x4B18FF, 3), altitude(0x4B18FF, 5_000), Outcome::Born),
-        (altitude(0x4B18FF, 5_000), altitude(0x4B18FF, 5_050), Outcome::Born),
-        (identity(0x4B18FF, 0x808), identity(0x4B18FF, 0x808), Outcome::Born),
-        (altitude(0x4B18FF, 5_000), altitude(0x4B18FF, 9_000), Outcome::UnknownAddress),
-        (altitude(0x4B18FF, 5_000), identity(0x4B18FF, 0x808), Outcome::UnknownAddress),
-        (altitude(0x4B18FF, 5_000), altitude(0x4B18FE, 5_000), Outcome::UnknownAddress),
+        (
+            coded_all_call(0x4B18FF, 3),
+            altitude(0x4B18FF, 5_000),
+            Outcome::Born,
+        ),
+        (
+            altitude(0x4B18FF, 5_000),
+            altitude(0x4B18FF, 5_050),
+            Outcome::Born,
+        ),
+        (
+            identity(0x4B18FF, 0x808),
+            identity(0x4B18FF, 0x808),
+            Outcome::Born,
+        ),
+        (
+            altitude(0x4B18FF, 5_000),
+            altitude(0x4B18FF, 9_000),
+            Outcome::UnknownAddress,
+        ),
+        (
+            altitude(0x4B18FF, 5_000),
+            identity(0x4B18FF, 0x808),
+            Outcome::UnknownAddress,
+        ),
+        (
+            altitude(0x4B18FF, 5_000),
+            altitude(0x4B18FE, 5_000),
+            Outcome::UnknownAddress,
+        ),
     ] {
         let mut tracker = Tracker::<4>::new();
         assert_eq!(hear(&mut tracker, &first, 0), Outcome::UnknownAddress);
-        assert_eq!(hear(&mut tracker, &second, 500), outcome, "{first:?} {second:?}");
+        assert_eq!(
+            hear(&mut tracker, &second, 500),
+            outcome,
+            "{first:?} {second:?}"
+        );
         if let Some(aircraft) = tracker.find(icao(0x4B18FF)) {
             assert!(!aircraft.is_confirmed());
         }
@@ -78,7 +106,10 @@ fn a_repaired_frame_bears_no_aircraft_alone() {
     };
     let outcome = tracker.on_frame(&frame, &message, repaired(0));
     assert_eq!(outcome, Outcome::UnknownAddress);
-    assert_eq!(tracker.on_frame(&frame, &message, repaired(500)), Outcome::Born);
+    assert_eq!(
+        tracker.on_frame(&frame, &message, repaired(500)),
+        Outcome::Born
+    );
     assert!(!tracker.find(icao(0x485020)).unwrap().is_confirmed());
     assert_balanced(&tracker);
 }
@@ -136,7 +167,10 @@ fn an_anonymous_address_is_another_aircraft() {
     let anonymous = squitter(0x91, 0x4B18FF, [0x58, 0xB9, 0x80, 0, 0, 0, 0]);
     assert_eq!(hear(&mut tracker, &anonymous, 0), Outcome::Born);
     assert_eq!(hear(&mut tracker, &all_call(0x4B18FF), 0), Outcome::Born);
-    assert_eq!(hear(&mut tracker, &altitude(0x4B18FF, 1_000), 0), Outcome::Updated);
+    assert_eq!(
+        hear(&mut tracker, &altitude(0x4B18FF, 1_000), 0),
+        Outcome::Updated
+    );
     assert_eq!(tracker.len(), 2);
     let of = |address| tracker.find(address).unwrap().baro_altitude(0).unwrap().0;
     assert_eq!(of(Address::NonIcao(0x4B18FF)), 36_000);
@@ -201,7 +235,13 @@ fn worth_decides_who_leaves() {
     for (at, hex) in (0..4).map(|at| (at, HAWAII[at % 2])) {
         hear(&mut tracker, &frame(hex), 400 * at as u64);
     }
-    assert!(tracker.find(icao(0xA6147F)).unwrap().position(1_200).is_some());
+    assert!(
+        tracker
+            .find(icao(0xA6147F))
+            .unwrap()
+            .position(1_200)
+            .is_some()
+    );
     hear(&mut tracker, &frame(VELOCITY), 1_200);
     hear(&mut tracker, &all_call(3), 1_200);
     // As fresh as those it meets, a weak one is worth less, and one like another is not worth more.
@@ -247,7 +287,11 @@ fn four_hundred_aircraft_at_the_channels_rate_keep_their_places() {
     // All-call replies come again after 54 ms: nobody has been silent for long enough to leave.
     assert_eq!((c.born, c.displaced), (400, 0));
     assert_eq!(c.no_place, c.offered - c.born - c.updated);
-    assert!(tracker.aircraft().all(|one| one.counts_last_second().mode_s >= 18));
+    assert!(
+        tracker
+            .aircraft()
+            .all(|one| one.counts_last_second().mode_s >= 18)
+    );
     assert_balanced(&tracker);
 }
 

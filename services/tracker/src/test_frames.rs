@@ -101,11 +101,8 @@ pub(crate) fn encode(kind: CprKind, format: CprFormat, place: Position) -> Cpr {
 pub(crate) fn on_surface(address: u32, format: CprFormat, place: Position) -> Frame {
     let cpr = encode(CprKind::Surface, format, place);
     let odd = u64::from(format == CprFormat::Odd);
-    let bits = 7 << 51
-        | 42 << 44
-        | odd << 34
-        | u64::from(cpr.latitude) << 17
-        | u64::from(cpr.longitude);
+    let bits =
+        7 << 51 | 42 << 44 | odd << 34 | u64::from(cpr.latitude) << 17 | u64::from(cpr.longitude);
     let [_, me @ ..] = bits.to_be_bytes();
     squitter(0x8C, address, me)
 }

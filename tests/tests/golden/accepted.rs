@@ -23,7 +23,7 @@ pub static ACCEPTED: &[Accepted] = &[
         peer: Peer::Rs1090,
         reason: "rs1090 reads an AC field with M = 1 as an altitude; here a metric altitude has a name of its own, since all 27 are noise",
         applies: |d| d.is_of(Field::Altitude) && is_metric(d),
-        counts: [0, 27],
+        counts: [0, 40],
     },
     Accepted {
         peer: Peer::Rs1090,
@@ -65,15 +65,15 @@ pub static ACCEPTED: &[Accepted] = &[
     },
     Accepted {
         peer: Peer::Rs1090,
-        reason: "rs1090 shows the first pair's place; the tracker waits for a second pair that agrees",
+        reason: "rs1090 shows the first pair's place; the tracker waits for one more message of each format that agrees",
         applies: |d| d.subject == Subject::TrackedPlace && d.ours == Said::Text(WAITING.to_owned()),
-        counts: [2, 656],
+        counts: [2, 778],
     },
     Accepted {
         peer: Peer::Rs1090,
-        reason: "rs1090 shows a place 130 km off the track, from a frame with right parity and wrong content; the tracker refuses it",
+        reason: "rs1090 shows a place 130 km off the track, from a frame with right parity and wrong content, and an ADS-R target whose only two messages lie 1.15 km apart; the tracker refuses both",
         applies: |d| d.subject == Subject::TrackedPlace && d.ours == Said::Text(REFUSED.to_owned()),
-        counts: [0, 1],
+        counts: [0, 2],
     },
     Accepted {
         peer: Peer::Rs1090,

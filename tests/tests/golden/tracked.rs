@@ -6,13 +6,13 @@ use crate::ledger::{Difference, Ledger, Peer, Subject, is_same};
 use crate::peer_rs1090;
 use crate::places::{degrees, is_same_place, place};
 use crate::view::{Field, Said, View};
-use mode_s::{Address, Body, Frame, Icao, Me, Message, Position};
+use mode_s::{Address, Body, Frame, HorizontalVelocity, Icao, Me, Message, Position};
 use rs1090::decode::DF;
 use rs1090::decode::ICAO;
 use rs1090::decode::adsb::ME;
 use rs1090::decode::cpr::{AircraftState, airborne_position_with_reference, decode_position};
 use std::collections::BTreeMap;
-use tracker::{Aircraft, Outcome, Tracker};
+use tracker::{Aircraft, Heard, Outcome, Tracker};
 
 /// Aircraft tracked at once, as in the firmware.
 const AIRCRAFT: usize = 400;
@@ -46,7 +46,7 @@ impl Tracked {
         }
         let message = Message::decode(frame);
         let before = self.ours.counters();
-        let outcome = self.ours.on_frame(&message, at_ms);
+        let outcome = self.ours.on_frame(frame, &message, Heard::at(at_ms));
         let Some(address) = message.address() else {
             return;
         };
@@ -105,7 +105,14 @@ fn holds(aircraft: &Aircraft, field: Field, message: &Message, now_ms: u64) -> O
         }
         Field::Track => Said::real(aircraft.track(now_ms).map(|a| f64::from(a.0) / 100.0)),
         Field::Heading => Said::real(aircraft.heading(now_ms).map(|a| f64::from(a.0) / 100.0)),
-        Field::Airspeed => Said::whole(aircraft.airspeed(now_ms).map(|a| a.knots)),
+        Field::Airspeed => {
+            let is_true = matches!(message.body, Body::ExtendedSquitter { me: Me::Velocity(v), .. } if matches!(v.horizontal, Some(HorizontalVelocity::Air { airspeed: Some(speed), .. }) if speed.is_true));
+            Said::whole(if is_true {
+                aircraft.true_airspeed_kt(now_ms)
+            } else {
+                aircraft.indicated_airspeed_kt(now_ms)
+            })
+        }
         Field::VerticalRate => {
             Said::whole(aircraft.vertical_rate(now_ms).map(|r| r.feet_per_minute))
         }
