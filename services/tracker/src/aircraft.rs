@@ -83,6 +83,8 @@ pub struct Aircraft {
     pub(crate) turbulence: u8,
     /// Per cent.
     pub(crate) humidity: u8,
+    /// Registers that the aircraft fills: see `hear_comm_b`.
+    pub(crate) announced: u8,
     pub(crate) emergency: EmergencyState,
     pub(crate) nacv: u8,
     pub(crate) version: u8,
@@ -132,6 +134,7 @@ impl Aircraft {
         },
         turbulence: 0,
         humidity: 0,
+        announced: 0,
         emergency: EmergencyState::None,
         nacv: 0,
         version: 0,

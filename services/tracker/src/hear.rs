@@ -3,8 +3,8 @@
 //! | message | fields |
 //! |---|---|
 //! | DF0, 16 | on ground, pressure altitude |
-//! | DF4, 20 | on ground, IDENT, alert, pressure altitude |
-//! | DF5, 21 | on ground, IDENT, alert, Mode A code |
+//! | DF4, 20 | on ground, IDENT, alert, pressure altitude; what its register says (`hear_comm_b`) |
+//! | DF5, 21 | on ground, IDENT, alert, Mode A code; what its register says |
 //! | DF11, CA of DF17 | on ground |
 //! | no position | pressure altitude |
 //! | identification | callsign, category |
@@ -29,7 +29,7 @@ use crate::reach::Motion;
 use crate::reference::References;
 use crate::signal::Heard;
 use crate::stamp::Stamp;
-use mode_s::{AltitudeFt, Body, Cpr, FlightStatus, Message, ModeACode, Origin, Parity};
+use mode_s::{AltitudeFt, Body, Cpr, FlightStatus, MeBits, Message, ModeACode, Origin, Parity};
 
 /// Most time between pressure altitude and GNSS-baro difference that are added, ms. Within it a steep climb changes neither much.
 const DIFFERENCE_LIFE_MS: u32 = 10_000;
@@ -80,18 +80,22 @@ impl Aircraft {
             Body::AltitudeReply {
                 flight_status,
                 altitude,
+                mb,
                 ..
             } => {
                 self.hear_status(flight_status, at_ms);
                 self.hear_baro(altitude, at_ms);
+                self.hear_mb(mb, at_ms);
             }
             Body::IdentityReply {
                 flight_status,
                 squawk,
+                mb,
                 ..
             } => {
                 self.hear_status(flight_status, at_ms);
                 self.hear_squawk(squawk, at_ms);
+                self.hear_mb(mb, at_ms);
             }
             Body::AllCallReply { capability } => self.hear_ground(capability.on_ground(), at_ms),
             Body::ExtendedSquitter { origin, ref me } => {
@@ -143,6 +147,12 @@ impl Aircraft {
             self.tell(Field::Position, at_ms);
         }
         outcome
+    }
+
+    fn hear_mb(&mut self, mb: Option<MeBits>, at_ms: u64) {
+        if let Some(mb) = mb {
+            self.hear_comm_b(mb, at_ms);
+        }
     }
 
     fn hear_status(&mut self, status: FlightStatus, at_ms: u64) {

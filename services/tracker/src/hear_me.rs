@@ -104,9 +104,7 @@ impl Aircraft {
             None => {}
         }
         if let Some(rate) = velocity.vertical_rate {
-            self.vertical_rate_fpm = rate.feet_per_minute;
-            self.flags.set(Flag::RateIsBaro, rate.is_barometric);
-            self.tell(Field::VerticalRate, at_ms);
+            self.hear_vertical_rate(rate.feet_per_minute, rate.is_barometric, at_ms);
         }
         if let Some(difference) = velocity.gnss_minus_baro_ft {
             self.gnss_minus_baro_ft = difference;
@@ -175,7 +173,18 @@ impl Aircraft {
         self.tell(Field::Nacv, at_ms);
     }
 
-    fn hear_ra(&mut self, active: bool, at_ms: u64) {
+    pub(crate) fn hear_vertical_rate(
+        &mut self,
+        feet_per_minute: i16,
+        is_barometric: bool,
+        at_ms: u64,
+    ) {
+        self.vertical_rate_fpm = feet_per_minute;
+        self.flags.set(Flag::RateIsBaro, is_barometric);
+        self.tell(Field::VerticalRate, at_ms);
+    }
+
+    pub(crate) fn hear_ra(&mut self, active: bool, at_ms: u64) {
         self.flags.set(Flag::TcasRa, active);
         self.tell(Field::TcasRa, at_ms);
     }

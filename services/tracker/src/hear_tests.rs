@@ -327,3 +327,66 @@ fn the_source_of_a_position_is_told() {
         assert_eq!(aircraft.position_source(1_200), Some(source));
     }
 }
+
+/// Offers a published DF20 whose sender an all-call reply has named before.
+fn hear_comm_b(tracker: &mut Tracker<3>, hex: &str, at_ms: u64) -> Address {
+    let reply = frame(hex);
+    let address = Message::decode(&reply).address().unwrap();
+    hear(tracker, &all_call(address.bits()), at_ms);
+    assert_eq!(hear(tracker, &reply, at_ms), Outcome::Updated);
+    address
+}
+
+#[test]
+fn comm_b_tells_callsign_and_selected_altitudes() {
+    let mut tracker = Tracker::<3>::new();
+    let address = hear_comm_b(&mut tracker, "A000083E202CC371C31DE0AA1CCF", 0);
+    let callsign = tracker.find(address).unwrap().callsign().unwrap();
+    assert_eq!(callsign.as_bytes(), b"KLM1017");
+    let address = hear_comm_b(&mut tracker, "A000029C85E42F313000007047D3", 0);
+    let aircraft = tracker.find(address).unwrap();
+    assert_eq!(aircraft.selected_altitude_mcp(0), Some(AltitudeFt(3_008)));
+    assert_eq!(aircraft.selected_altitude_fms(0), Some(AltitudeFt(3_008)));
+    assert_eq!(aircraft.pressure_setting_tenths(0), Some(10_200));
+    assert_eq!(aircraft.modes(0), None);
+}
+
+/// ME of a velocity over the ground: knots to the east and to the north, nothing else told.
+fn velocity_me(east: i16, north: i16) -> [u8; 7] {
+    let component = |knots: i16| u64::from(knots < 0) << 10 | u64::from(knots.unsigned_abs() + 1);
+    let bits = 19u64 << 51 | 1 << 48 | component(east) << 32 | component(north) << 21;
+    let [_, me @ ..] = bits.to_be_bytes();
+    me
+}
+
+#[test]
+fn comm_b_tells_turn_heading_and_speeds_beside_squitters_that_tell_the_track() {
+    // Published 5,0: roll 2.1°, track 114.3°, 438 kt, 0.125°/s, TAS 424 kt; and 6,0: heading 42.7°, 252 kt, Mach 0.42, -1920 ft/min.
+    const TURN: &str = "A000139381951536E024D4CCF6B5";
+    const SPEED: &str = "A00004128F39F91A7E27C46ADC21";
+    let aboard = |hex: &str| Message::decode(&frame(hex)).address().unwrap();
+    for squitters in [false, true] {
+        let mut tracker = Tracker::<3>::new();
+        for hex in [TURN, SPEED] {
+            // A velocity that belongs to both: 440 kt to 113°, or none.
+            if squitters {
+                let velocity = squitter(0x8D, aboard(hex).bits(), velocity_me(405, -172));
+                hear(&mut tracker, &velocity, 0);
+            }
+            hear_comm_b(&mut tracker, hex, 100);
+        }
+        let turning = tracker.find(aboard(TURN)).unwrap();
+        if squitters {
+            assert_eq!(turning.roll_centidegrees(100), Some(211));
+            assert_eq!(turning.track_rate_centidegrees(100), Some(12));
+            assert_eq!(turning.true_airspeed_kt(100), Some(424));
+            assert_eq!(turning.ground_speed_eighths(100), Some(440 * 8));
+            let speed = tracker.find(aboard(SPEED)).unwrap();
+            assert_eq!(speed.heading(100).map(|heading| heading.0), Some(4_271));
+            assert_eq!(speed.indicated_airspeed_kt(100), Some(252));
+            assert_eq!(speed.mach_thousandths(100), Some(420));
+        } else if let Some(speed) = turning.ground_speed_eighths(100) {
+            assert_eq!(speed, 438 * 8);
+        }
+    }
+}

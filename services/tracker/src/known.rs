@@ -23,7 +23,7 @@ impl Aircraft {
             mach_thousandths: is_fresh(Field::Mach).then_some(self.mach),
             vertical_rate_fpm: is_fresh(Field::VerticalRate).then_some(self.vertical_rate_fpm),
             callsign: self.callsign(),
-            ..Known::NOTHING
+            announced: self.announced(),
         }
     }
 }

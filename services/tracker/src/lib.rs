@@ -24,6 +24,7 @@ mod counts;
 mod field;
 mod flags;
 mod hear;
+mod hear_comm_b;
 mod hear_me;
 #[cfg(test)]
 mod hear_tests;
