@@ -7,7 +7,7 @@ use std::process::Command;
 use crate::{fw, golden, peers, workspace};
 
 /// The benchmarks and what they measure.
-const BENCHES: [(&str, &str); 10] = [
+const BENCHES: [(&str, &str); 11] = [
     (
         "twin",
         "emulated MHz and share of real time: one core, two cores, two cores with capture and DMA, the image on real traffic",
@@ -35,6 +35,10 @@ const BENCHES: [(&str, &str); 10] = [
     (
         "false-frames",
         "frames that nobody sent, on noise and on Mode A/C alone; --minutes N, --threads N, --slicer KIND",
+    ),
+    (
+        "decode",
+        "frames a second from bytes to fields beside rs1090 and adsb_deku; cycles a frame in the twin; bytes an aircraft",
     ),
     (
         "cpu-peers",

@@ -70,7 +70,7 @@ impl Log {
 }
 
 /// Where a package of the lock file lies.
-fn folder_of(package: &str) -> PathBuf {
+pub fn folder_of(package: &str) -> PathBuf {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--format-version", "1", "--locked"])
         .current_dir(env!("CARGO_MANIFEST_DIR"))
