@@ -268,13 +268,13 @@ fn register(dice: &mut Dice) -> u64 {
     let random = dice.next() >> 8;
     match dice.below(6) {
         0 => 0x20 << 48 | [0x0820_8208_2082, 0x2CC3_71C3_1DE0][dice.below(2) as usize],
-        1 => 0xFA81_C100_0000_00,
+        1 => 0xFA_81C1_0000_0000,
         2 => 0x30 << 48 | random & 0xFFFF_FFFF_FFFF,
         // Selected altitudes in hundreds and 1013 hPa.
         3 => 1 << 55 | (dice.below(400) * 25 / 4) << 43 | 1 << 29 | 2_130 << 17,
         // 5,0 and 6,0 of an airliner.
-        4 => 0x8019_3915_36E0_24 | random & 0xFF,
-        _ => 0x8F39_F91A_7E27_C4 ^ random & 0xFF,
+        4 => 0x80_1939_1536_E024 | random & 0xFF,
+        _ => 0x8F_39F9_1A7E_27C4 ^ random & 0xFF,
     }
 }
 
