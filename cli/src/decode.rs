@@ -76,8 +76,8 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
                     }
                 }
                 let heard = now_ms.map(Heard::at);
-                let tracked = heard
-                    .map(|heard| json::Tracked::hear(&mut tracking, &frame, &message, heard));
+                let tracked =
+                    heard.map(|heard| json::Tracked::hear(&mut tracking, &frame, &message, heard));
                 let object = json::object(&hex, seconds, &message, tracked.as_ref());
                 writeln!(out, "{object}")?;
             }
