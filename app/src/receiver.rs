@@ -83,7 +83,7 @@ impl Receiver {
                 at_ms: raw_frame.arrival / TICKS_PER_MS,
                 level_cdbm: raw_frame.level,
                 quality_cdb: None,
-                is_repaired: raw_frame.repaired != 0,
+                is_repaired: raw_frame.repaired() != 0,
             };
             self.tracker.on_frame(&raw_frame.frame, &message, heard);
             self.console_reports.frame(&mut self.console, &raw_frame);

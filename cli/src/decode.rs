@@ -69,11 +69,11 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
             Ok((seconds, hex, frame)) => {
                 let message = Message::decode(&frame);
                 let now_ms = seconds.map(|s| (s * 1e3) as u64);
-                if let Some(ms) = now_ms {
-                    if *second.get_or_insert(ms / 1000) != ms / 1000 {
-                        second = Some(ms / 1000);
-                        tracking.each_second(ms);
-                    }
+                if let Some(ms) = now_ms
+                    && *second.get_or_insert(ms / 1000) != ms / 1000
+                {
+                    second = Some(ms / 1000);
+                    tracking.each_second(ms);
                 }
                 let heard = now_ms.map(Heard::at);
                 let tracked =
