@@ -346,6 +346,9 @@ impl Board {
     }
 }
 
+#[cfg(test)]
+mod board_tests;
+
 /// The trigger level the firmware's PWM makes at its default of 1300 mV: 1970 of 5000 counts of 3300 mV.
 pub fn pwm_level_mv() -> f64 {
     1970.0 / 5000.0 * 3300.0

@@ -467,7 +467,7 @@ fn boot2_crc(bytes: &[u8]) -> u32 {
 #[cfg(test)]
 mod cost_tests;
 #[cfg(test)]
-mod test_chip;
+pub(crate) mod test_chip;
 #[cfg(test)]
 #[path = "chip_tests.rs"]
 mod tests;

@@ -18,6 +18,12 @@ pub const STACK: u32 = 0x2000_8000;
 /// A chip at 120 MHz, everything out of reset, a microsecond tick, both cores stopped or in `code`.
 pub fn chip(code: &[u16]) -> Chip {
     let mut chip = Chip::new(Flash::new(1 << 20, [0; 8]));
+    prepare(&mut chip, code);
+    chip
+}
+
+/// The same for a chip that has just been switched on with an empty flash.
+pub fn prepare(chip: &mut Chip, code: &[u16]) {
     // The flash is empty on purpose: no program but the test's.
     assert_eq!(chip.bus.fault.take(), Some(Fault::Boot2));
     for (register, value) in [
@@ -44,7 +50,6 @@ pub fn chip(code: &[u16]) -> Chip {
     let regs = &mut chip.cores[0].cpu.regs;
     regs.msp = STACK;
     regs.r[13] = STACK;
-    chip
 }
 
 /// `b .`

@@ -59,7 +59,7 @@ impl Chain {
     /// Stage after stage over the whole block: each is then a short loop that the host runs fast.
     pub fn feed(&mut self, dbm: &mut [f32], edges: &mut Vec<Edge>) {
         if self.settled(dbm) {
-            self.history.stands(&self.detector, self.now_ps);
+            self.history.stands(&self.detector, self.now_ps, dbm.len());
             self.now_ps += self.step_ps * dbm.len() as u64;
             return;
         }

@@ -10,17 +10,17 @@ const BLOCKS: usize = 16;
 
 struct Block {
     start_ps: u64,
+    end_ps: u64,
     detector: Detector,
+    /// Empty where the detector stood still.
     aims_mv: Vec<f32>,
 }
 
-/// The last blocks, the latest at `next - 1`.
+/// The last blocks, the oldest at `next`.
 pub(super) struct LevelHistory {
     step_ps: u64,
     blocks: Vec<Block>,
     next: usize,
-    /// The detector stands still from here on, at this output.
-    stands: Option<(u64, f32)>,
 }
 
 impl LevelHistory {
@@ -29,48 +29,54 @@ impl LevelHistory {
             step_ps,
             blocks: Vec::new(),
             next: 0,
-            stands: None,
         }
     }
 
     /// A block begins at `start_ps` with the detector so, and it will aim at these outputs one after the other.
     pub(super) fn note(&mut self, detector: &Detector, start_ps: u64, aims_mv: &[f32]) {
-        self.stands = None;
+        let end_ps = start_ps + self.step_ps * aims_mv.len() as u64;
+        let block = self.begin(detector, start_ps, end_ps);
+        block.aims_mv.extend_from_slice(aims_mv);
+    }
+
+    /// The block of so many samples that begins at `start_ps` moves nothing.
+    pub(super) fn stands(&mut self, detector: &Detector, start_ps: u64, samples: usize) {
+        let end_ps = start_ps + self.step_ps * samples as u64;
+        let last = (self.next + self.blocks.len()).checked_sub(1);
+        let last = last.and_then(|n| self.blocks.get_mut(n % BLOCKS));
+        match last.filter(|b| b.aims_mv.is_empty() && b.end_ps == start_ps) {
+            Some(still) => still.end_ps = end_ps,
+            None => drop(self.begin(detector, start_ps, end_ps)),
+        }
+    }
+
+    /// The latest block, empty.
+    fn begin(&mut self, detector: &Detector, start_ps: u64, end_ps: u64) -> &mut Block {
         if self.blocks.len() < BLOCKS {
             self.blocks.push(Block {
                 start_ps,
+                end_ps,
                 detector: detector.clone(),
-                aims_mv: aims_mv.to_vec(),
+                aims_mv: Vec::new(),
             });
-            return;
+            let last = self.blocks.len() - 1;
+            return &mut self.blocks[last];
         }
         let block = &mut self.blocks[self.next];
-        block.start_ps = start_ps;
+        self.next = (self.next + 1) % BLOCKS;
+        (block.start_ps, block.end_ps) = (start_ps, end_ps);
         block.detector = detector.clone();
         block.aims_mv.clear();
-        block.aims_mv.extend_from_slice(aims_mv);
-        self.next = (self.next + 1) % BLOCKS;
-    }
-
-    /// The block that begins at `start_ps` moves nothing.
-    pub(super) fn stands(&mut self, detector: &Detector, start_ps: u64) {
-        self.stands.get_or_insert((start_ps, detector.state()));
+        block
     }
 
     /// The output at an instant, mV.
     pub(super) fn detector_mv(&self, at_ps: u64) -> Option<f32> {
-        if let Some((from, mv)) = self.stands
-            && at_ps >= from
-        {
-            return Some(mv);
-        }
-        let block = self.blocks.iter().find(|b| {
-            let end = b.start_ps + self.step_ps * b.aims_mv.len() as u64;
-            (b.start_ps..end).contains(&at_ps)
-        })?;
+        let holds = |b: &&Block| (b.start_ps..b.end_ps).contains(&at_ps);
+        let block = self.blocks.iter().find(holds)?;
         let mut detector = block.detector.clone();
         let steps = ((at_ps - block.start_ps) / self.step_ps) as usize;
-        for aim in &block.aims_mv[..=steps] {
+        for aim in block.aims_mv.iter().take(steps + 1) {
             detector.step(*aim);
         }
         Some(detector.state())
