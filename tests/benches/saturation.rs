@@ -11,21 +11,10 @@
 use tests::Bench;
 use tests::profile::Functions;
 use tests::reception::device::{Device, counter};
+use tests::reception::limit::{self, AIRCRAFT};
 use twin::front_end::{FrontEnd, Player};
 use twin::source::PRE_ROLL_PS;
-use twin::source::scene::aircraft::{Aircraft, InTurn};
-use twin::source::scene::traffic::LONG_FRAME_PS;
-use twin::source::scene::{Fleet, Tolerances, dbm_at_snr, wave};
 
-use std::collections::HashSet;
-use std::sync::Arc;
-
-/// Aircraft in turn; as many as the device tracks.
-const AIRCRAFT: usize = 400;
-/// Signal-to-noise ratios in 2 MHz, dB: clear of the noise, so that what is lost is lost to load.
-const SNR_DB: (f32, f32) = (30.0, 40.0);
-const SEED: u64 = 8333;
-const PLACE: (f64, f64) = (52.4, 13.5);
 const PS_A_MS: u64 = 1_000_000_000;
 /// Functions listed a core with `--profile`.
 const LISTED: usize = 40;
@@ -56,7 +45,7 @@ fn main() -> std::io::Result<()> {
     );
     bench.line(&format!(
         "{} long frames back to back in {ms} ms, of {AIRCRAFT} aircraft",
-        ms * PS_A_MS / LONG_FRAME_PS
+        limit::frames_in(ms)
     ));
     bench.line(&format!(
         "{:<7}{:>9}{:>9}{:>10}{:>10}{:>15}{:>14}{:>9}{:>9}",
@@ -91,23 +80,6 @@ fn main() -> std::io::Result<()> {
     ))
 }
 
-fn air(ms: u64) -> (wave::Wave, HashSet<Vec<u8>>) {
-    let dbm = (dbm_at_snr(SNR_DB.0), dbm_at_snr(SNR_DB.1));
-    let frames = (ms * PS_A_MS / LONG_FRAME_PS) as usize;
-    let sent =
-        || InTurn::new(Aircraft::fleet(SEED, AIRCRAFT, PLACE, dbm), LONG_FRAME_PS).take(frames);
-    let bytes = sent().filter_map(|emission| emission.frame().map(|f| f.bytes().to_vec()));
-    let bytes = bytes.collect();
-    let options = wave::Options {
-        step_ps: wave::STEP_PS,
-        noise_dbm: Some(twin::front_end::parameters::NOISE_DBM),
-        seed: SEED,
-        length_ps: ms * PS_A_MS,
-    };
-    let fleet = Arc::new(Fleet::new(SEED, AIRCRAFT, &Tolerances::ANNEX_10));
-    (wave::Wave::new(fleet, Box::new(sent()), options), bytes)
-}
-
 fn run(bench: &mut Bench, reports: &str, ms: u64) -> Outcome {
     let mut device = Device::start();
     let csbee = reports == "csbee";
@@ -119,8 +91,8 @@ fn run(bench: &mut Bench, reports: &str, ms: u64) -> Outcome {
     }
     let before = device.stats();
     device.ask(&format!("AT+PROTOCOL=CONSOLE,{}", reports.to_uppercase()));
-    let (wave, sent) = air(ms);
-    let offered = (ms * PS_A_MS / LONG_FRAME_PS) as usize;
+    let (wave, sent) = limit::back_to_back(ms);
+    let offered = limit::frames_in(ms);
     let playback = device.play_on(Box::new(Player::new(wave, &FrontEnd::ADSBEE_1090)));
     device.run_ms(PRE_ROLL_PS / PS_A_MS);
     device.board.comms_read();

@@ -5,6 +5,7 @@
 //! | `fair` | which decoded frames of a recording count |
 //! | `native` | a scene or recording through a slicer and the native engine |
 //! | `device` | the same through the shipped image in the twin |
+//! | `limit` | long frames back to back |
 //! | `mutability` | Debian's dump1090-mutability on the same samples |
 //! | `nothing` | air in which nobody sends, for what is invented |
 //! | `points` | the simulated scenes, and what the prototype study measured on such |
@@ -14,6 +15,7 @@
 
 pub mod device;
 pub mod fair;
+pub mod limit;
 pub mod mutability;
 pub mod native;
 pub mod nothing;
