@@ -115,6 +115,7 @@ fn start() -> Option<core::convert::Infallible> {
         capture_start_us,
         start: cause,
         second: 0,
+        second_ends_us: 1_000_000,
         last: (0, 0),
         reboot_at_us: None,
         confirm: Confirm::new(parts.flash),

@@ -80,6 +80,11 @@ impl Reports {
         }
     }
 
+    /// Whether a burst is under way.
+    pub fn in_burst(&self) -> bool {
+        self.burst.is_some()
+    }
+
     /// Goes on with the burst. Returns whether it could go on at once.
     pub fn turn<O: Outlet, const N: usize>(
         &mut self,

@@ -76,8 +76,8 @@ impl UsbConsole {
     pub fn poll(&mut self, received: impl FnMut(u8)) -> bool {
         let mut moved = self.device.poll(&mut [&mut self.class]);
         let mut packet = [0; PACKET];
-        if let Ok(count) = self.class.read_packet(&mut packet) {
-            moved = true;
+        // Without an event there is nothing to read; a packet that is not taken stays an event.
+        if moved && let Ok(count) = self.class.read_packet(&mut packet) {
             packet[..count].iter().copied().for_each(received);
         }
         if self.is_open() {
