@@ -66,6 +66,8 @@ impl UsbParts {
 pub struct Parts {
     /// Pins by net name that a driver takes; the rest are wired already.
     pub led: adsbee_1090::Led,
+    /// BOOT/CONFIG pin.
+    pub boot_config: adsbee_1090::BootConfig,
     /// Trigger level PWM, running at duty 0.
     pub trigger_level: TriggerLevelPwm,
     /// PULSES sampler, stopped.
@@ -150,6 +152,7 @@ impl Parts {
 
         Some(Self {
             led: pins.led,
+            boot_config: pins.boot_config,
             trigger_level: trigger_level_pwm(slices.pwm4, TRIGGER_LEVEL_PERIOD),
             sampler: PioSampler::new(p.PIO0, PULSES_GPIO),
             dma: DmaChannels { dma: p.DMA },

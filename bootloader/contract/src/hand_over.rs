@@ -11,7 +11,8 @@
 //! |---|---|---|---|
 //! | run | bootloader, slot verified and chosen, then watchdog reset | bootloader | jump first thing: the peripherals are as after a reset |
 //! | report | bootloader, just before the jump | app | why this start happened; never taken for a request |
-//! | restart | app (`AT+REBOOT`, panic), then watchdog reset | bootloader | why the app gave up; the slot is verified again |
+//! | restart | app (`AT+REBOOT`, panic), then watchdog reset | bootloader | why the app gave up; the slots are verified again |
+//! | stay | app (`AT+REBOOT_BOOTLOADER`), then watchdog reset | bootloader | the same, locked |
 
 use crate::boot_log::SlotName;
 
@@ -20,6 +21,7 @@ const TAG: u32 = 0x5351_0000;
 const KIND_RUN: u32 = 0x01;
 const KIND_REPORT: u32 = 0x02;
 const KIND_RESTART: u32 = 0x03;
+const KIND_STAY: u32 = 0x04;
 
 /// Why the device started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,8 +79,10 @@ pub enum HandOver {
     Run(Cause, SlotName),
     /// Bootloader to app.
     Report(Cause),
-    /// App to bootloader.
+    /// App to bootloader: start again.
     Restart(Cause),
+    /// App to bootloader, or bootloader to itself: start again and stay in BOOTLOADER.
+    Stay(Cause),
 }
 
 impl HandOver {
@@ -88,6 +92,7 @@ impl HandOver {
             HandOver::Run(cause, slot) => (KIND_RUN, slot.index() as u32, cause),
             HandOver::Report(cause) => (KIND_REPORT, 0, cause),
             HandOver::Restart(cause) => (KIND_RESTART, 0, cause),
+            HandOver::Stay(cause) => (KIND_STAY, 0, cause),
         };
         let word = TAG | kind << 8 | slot << 4 | cause.code();
         [word, !word]
@@ -104,6 +109,7 @@ impl HandOver {
             (KIND_RUN, 1) => Some(HandOver::Run(cause, SlotName::B)),
             (KIND_REPORT, 0) => Some(HandOver::Report(cause)),
             (KIND_RESTART, 0) => Some(HandOver::Restart(cause)),
+            (KIND_STAY, 0) => Some(HandOver::Stay(cause)),
             _ => None,
         }
     }
@@ -130,6 +136,7 @@ mod tests {
                     HandOver::Run(cause, SlotName::B),
                     HandOver::Report(cause),
                     HandOver::Restart(cause),
+                    HandOver::Stay(cause),
                 ]
             })
             .collect()

@@ -8,6 +8,8 @@
 //! | [`choose`] | which slot runs: trial, confirmed, rollback; which one an update may overwrite |
 //! | [`package`], [`update`] | what of a file is taken, in which order it is written |
 //! | [`ymodem`] | how the file comes |
+//! | [`command`], [`session`] | the BOOTLOADER state: window, lock, what is typed, when it ends |
+//! | [`verifier`] | verification in slices |
 //!
 //! ```text
 //!  scratch words say Run ─────────────────────────────▶ Jump       (clear the words, leave a report, set VTOR, jump)
@@ -23,10 +25,13 @@
 extern crate std;
 
 pub mod choose;
+pub mod command;
 pub mod keys;
 pub mod package;
+pub mod session;
 pub mod slot;
 pub mod update;
+pub mod verifier;
 pub mod ymodem;
 
 use boot_contract::boot_log::SlotName;
@@ -48,27 +53,55 @@ pub enum ResetSource {
 pub enum Start {
     /// Jump into the slot at once, leaving this report.
     Jump(Cause, SlotName),
-    /// Verify the slots, for a start of this cause.
-    Verify(Cause),
+    /// The BOOTLOADER state, for a start of this cause; locked if asked for.
+    Session { cause: Cause, locked: bool },
 }
 
 /// Reads the hand-over words and the reset source.
 pub fn start(words: [u32; 2], source: ResetSource) -> Start {
-    // After power-on the words are undefined: whatever they seem to say, verify.
+    let session = |cause| Start::Session {
+        cause,
+        locked: false,
+    };
+    // After power-on the words are undefined: whatever they seem to say, verify. Nor does a lock survive it.
     if source == ResetSource::PowerOn {
-        return Start::Verify(Cause::PowerOn);
+        return session(Cause::PowerOn);
     }
     match (HandOver::from_words(words), source) {
         (Some(HandOver::Run(cause, slot)), ResetSource::WatchdogForce) => Start::Jump(cause, slot),
-        (Some(HandOver::Restart(cause)), _) => Start::Verify(cause),
-        (_, ResetSource::WatchdogTimer) => Start::Verify(Cause::Watchdog),
-        (_, _) => Start::Verify(Cause::Other),
+        (Some(HandOver::Restart(cause)), _) => session(cause),
+        (Some(HandOver::Stay(cause)), _) => Start::Session {
+            cause,
+            locked: true,
+        },
+        (_, ResetSource::WatchdogTimer) => session(Cause::Watchdog),
+        (_, _) => session(Cause::Other),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn unlocked(cause: Cause) -> Start {
+        Start::Session {
+            cause,
+            locked: false,
+        }
+    }
+
+    #[test]
+    fn a_lock_is_kept_over_a_restart_and_lost_with_the_power() {
+        let words = HandOver::Stay(Cause::Command).words();
+        assert_eq!(
+            start(words, ResetSource::WatchdogForce),
+            Start::Session {
+                cause: Cause::Command,
+                locked: true
+            }
+        );
+        assert_eq!(start(words, ResetSource::PowerOn), unlocked(Cause::PowerOn));
+    }
 
     #[test]
     fn a_run_request_after_a_forced_reset_jumps_with_its_cause() {
@@ -84,13 +117,10 @@ mod tests {
     #[test]
     fn a_run_request_that_power_on_left_behind_is_not_believed() {
         let words = HandOver::Run(Cause::PowerOn, SlotName::A).words();
-        assert_eq!(
-            start(words, ResetSource::PowerOn),
-            Start::Verify(Cause::PowerOn)
-        );
+        assert_eq!(start(words, ResetSource::PowerOn), unlocked(Cause::PowerOn));
         assert_eq!(
             start(words, ResetSource::WatchdogTimer),
-            Start::Verify(Cause::Watchdog)
+            unlocked(Cause::Watchdog)
         );
     }
 
@@ -99,11 +129,11 @@ mod tests {
         let words = HandOver::Report(Cause::PowerOn).words();
         assert_eq!(
             start(words, ResetSource::WatchdogForce),
-            Start::Verify(Cause::Other)
+            unlocked(Cause::Other)
         );
         assert_eq!(
             start(words, ResetSource::WatchdogTimer),
-            Start::Verify(Cause::Watchdog)
+            unlocked(Cause::Watchdog)
         );
     }
 
@@ -111,10 +141,7 @@ mod tests {
     fn a_restart_names_its_own_cause() {
         for cause in [Cause::Command, Cause::Panic] {
             let words = HandOver::Restart(cause).words();
-            assert_eq!(
-                start(words, ResetSource::WatchdogForce),
-                Start::Verify(cause)
-            );
+            assert_eq!(start(words, ResetSource::WatchdogForce), unlocked(cause));
         }
     }
 
@@ -123,7 +150,7 @@ mod tests {
         let [word, _] = HandOver::Run(Cause::PowerOn, SlotName::A).words();
         assert_eq!(
             start([word, 0], ResetSource::WatchdogForce),
-            Start::Verify(Cause::Other)
+            unlocked(Cause::Other)
         );
     }
 }

@@ -13,7 +13,7 @@
 //! | 16, 17 | ESP32_UART TX, RX | nobody yet | – |
 //! | 18 | BIAS_TEE_EN_N, active low | held high: off | SIO out |
 //! | 19 | PULSES, the comparator's output | `pio_sampler` | PIO0 in |
-//! | 20 | BOOT_CONFIG (free pin, so named by a ruling) | nobody yet | – |
+//! | 20 | BOOT_CONFIG (free pin, so named by a ruling), pulled up | bootloader | SIO in |
 //! | 21-24 | free | nobody | – |
 //! | 25 | TRIGGER_LEVEL, PWM through an RC | `drivers::trigger_level` | PWM4 B |
 //! | 26 | GNSS_PPS | nobody yet | – |
@@ -21,10 +21,10 @@
 //!
 //! Source: the hardware facts in the project's ADSBee reference notes. Pins that nobody uses stay as reset leaves them.
 
-use rp2040_hal::gpio::bank0::{Gpio4, Gpio5, Gpio15, Gpio18, Gpio19, Gpio25};
+use rp2040_hal::gpio::bank0::{Gpio4, Gpio5, Gpio15, Gpio18, Gpio19, Gpio20, Gpio25};
 use rp2040_hal::gpio::{
-    self, FunctionPio0, FunctionPwm, FunctionSioOutput, FunctionUart, Pin, PinState, PullDown,
-    PullNone, PullUp,
+    self, FunctionPio0, FunctionPwm, FunctionSioInput, FunctionSioOutput, FunctionUart, Pin,
+    PinState, PullDown, PullNone, PullUp,
 };
 
 /// GPIO of PULSES: the PIO program's input base.
@@ -32,6 +32,8 @@ pub const PULSES_GPIO: u8 = 19;
 
 /// Status LED, high = on.
 pub type Led = Pin<Gpio15, FunctionSioOutput, PullNone>;
+/// BOOT/CONFIG, low = held.
+pub type BootConfig = Pin<Gpio20, FunctionSioInput, PullUp>;
 /// Trigger level.
 pub type TriggerLevel = Pin<Gpio25, FunctionPwm, PullNone>;
 /// PWM slice of TRIGGER_LEVEL (GPIO 25: slice 4, channel B).
@@ -49,6 +51,8 @@ pub struct Pins {
     pub bias_tee_enable_n: Pin<Gpio18, FunctionSioOutput, PullNone>,
     /// Comparator output. Pulled down: without a comparator the line is quiet.
     pub pulses: Pin<Gpio19, FunctionPio0, PullDown>,
+    /// BOOT/CONFIG.
+    pub boot_config: BootConfig,
     /// Trigger level PWM.
     pub trigger_level: TriggerLevel,
 }
@@ -67,6 +71,7 @@ impl Pins {
                 .into_pull_type()
                 .into_push_pull_output_in_state(PinState::High),
             pulses: pins.gpio19.reconfigure(),
+            boot_config: pins.gpio20.reconfigure(),
             trigger_level: pins.gpio25.reconfigure(),
         }
     }
