@@ -55,9 +55,13 @@ fn csbee_crc(line: &str) -> Option<(String, String)> {
 }
 
 #[test]
-fn the_image_boots_through_the_bootloader_and_opens_its_console_within_a_second() {
+fn the_image_boots_through_the_bootloader_and_opens_its_console_half_a_second_after_its_window() {
     let board = booted();
-    assert!(board.seconds() < 1.0, "took {} s", board.seconds());
+    assert!(
+        (3.0..3.5).contains(&board.seconds()),
+        "took {} s",
+        board.seconds()
+    );
     // Power-on, then the hand-over through the watchdog.
     assert_eq!(board.chip.resets.len(), 2, "{:?}", board.chip.resets);
 }
@@ -266,7 +270,7 @@ fn the_console_answers_each_command_and_refuses_the_rest_with_a_reason() {
     assert!(ask(&mut board, &"A".repeat(1_000)).starts_with("ERROR "));
     // A reboot comes back by itself.
     ask(&mut board, "AT+REBOOT");
-    board.run_ms(2_000).expect("the chip runs");
+    board.run_ms(4_500).expect("the chip runs");
     assert!(
         board.chip.bus.usb_host.open,
         "the console did not come back"
@@ -277,8 +281,11 @@ fn the_console_answers_each_command_and_refuses_the_rest_with_a_reason() {
 /// The bootloader's answer to a flash it must not start.
 fn refusal(flash: Flash) -> String {
     let mut board = Board::with_flash(flash);
-    board.run_ms(1_500).expect("the chip runs");
-    assert!(!board.chip.bus.usb_host.open, "the image was started");
+    board.run_ms(4_500).expect("the chip runs");
+    assert_eq!(
+        board.chip.bus.pio[0].enabled_at[0], 0,
+        "the image was started"
+    );
     String::from_utf8_lossy(&board.comms_read()).into_owned()
 }
 

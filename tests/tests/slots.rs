@@ -96,6 +96,13 @@ fn standing(board: &Board, slot: SlotName) -> Option<Standing> {
     log.state().slots[slot.index()].map(|(_, standing)| standing)
 }
 
+/// Runs until the app captures and its console is open.
+fn wait_for_app(board: &mut Board, seconds: u64) {
+    let captures = |board: &mut Board| board.chip.bus.pio[0].enabled_at[0] != 0;
+    assert!(board.run_until(seconds, captures).expect("the chip runs"));
+    board.wait_for_console().expect("the console opens");
+}
+
 /// The DEVICE line of `AT+STATS?`.
 fn device_line(board: &mut Board) -> String {
     board.console_write(b"AT+PROTOCOL=CONSOLE,NONE\r\n");
@@ -113,7 +120,7 @@ fn device_line(board: &mut Board) -> String {
 #[test]
 fn an_image_confirms_itself_after_ten_seconds_while_capture_goes_on() {
     let mut board = Board::with_flash(flashed());
-    board.wait_for_console().expect("the console opens");
+    wait_for_app(&mut board, 5);
     assert_eq!(standing(&board, SlotName::A), Some(Standing::Trial(1)));
     assert!(device_line(&mut board).ends_with("slot=A,image=on_trial"));
     board.run_ms(9_000).expect("the chip runs");
@@ -130,12 +137,12 @@ fn an_update_runs_from_the_other_slot_and_the_power_may_fail_before_it_is_confir
     let mut flash = flashed();
     install(&mut flash, &package());
     let mut board = Board::with_flash(flash);
-    board.wait_for_console().expect("the console opens");
+    wait_for_app(&mut board, 5);
     assert!(device_line(&mut board).ends_with("slot=B,image=on_trial"));
     assert_eq!(standing(&board, SlotName::B), Some(Standing::Trial(1)));
     // Power off and on: the same try again.
     let mut board = Board::with_flash(board.chip.bus.flash);
-    board.wait_for_console().expect("the console opens");
+    wait_for_app(&mut board, 5);
     assert_eq!(standing(&board, SlotName::B), Some(Standing::Trial(1)));
     board.run_ms(11_000).expect("the chip runs");
     assert_eq!(standing(&board, SlotName::B), Some(Standing::Confirmed));
@@ -146,7 +153,7 @@ fn an_update_runs_from_the_other_slot_and_the_power_may_fail_before_it_is_confir
 fn an_image_that_restarts_at_once_is_tried_three_times_then_the_old_one_runs() {
     let mut flash = flashed();
     let mut board = Board::with_flash(flash);
-    board.wait_for_console().expect("the console opens");
+    wait_for_app(&mut board, 5);
     board.run_ms(11_000).expect("the chip runs");
     flash = board.chip.bus.flash;
     let reset_at = SlotName::B.slot().link_address() + 0x100;
@@ -156,7 +163,7 @@ fn an_image_that_restarts_at_once_is_tried_three_times_then_the_old_one_runs() {
     });
     install(&mut flash, &bad);
     let mut board = Board::with_flash(flash);
-    board.wait_for_console().expect("the console opens");
+    wait_for_app(&mut board, 20);
     assert_eq!(standing(&board, SlotName::B), Some(Standing::Rejected));
     assert!(device_line(&mut board).ends_with("slot=A,image=confirmed"));
     // Power-on, three times hand-over and restart, the last hand-over.

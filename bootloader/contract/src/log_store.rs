@@ -80,6 +80,21 @@ impl BootLog {
         &self.state
     }
 
+    /// Whether the next record will need an erase, 45 ms.
+    pub fn needs_room(&self) -> bool {
+        self.active.is_none() || self.next >= RECORDS
+    }
+
+    /// Does that erase now, when there is time for it.
+    pub fn make_room<F: NorFlash>(&mut self, flash: &mut F) -> Result<(), LogError<F::Error>> {
+        for _ in 0..MOST_PLACES {
+            if !self.needs_room() || self.move_on(flash, None)? {
+                return Ok(());
+            }
+        }
+        Err(LogError::Worn)
+    }
+
     /// Writes a record and takes it into the state.
     pub fn append<F: NorFlash>(
         &mut self,
@@ -93,7 +108,7 @@ impl BootLog {
                     self.next += 1;
                     write(flash, sector, index, record)?
                 }
-                _ => self.move_on(flash, record)?,
+                _ => self.move_on(flash, Some(record))?,
             };
             if written {
                 self.state.apply(record);
@@ -107,7 +122,7 @@ impl BootLog {
     fn move_on<F: NorFlash>(
         &mut self,
         flash: &mut F,
-        record: Record,
+        record: Option<Record>,
     ) -> Result<bool, LogError<F::Error>> {
         let (sector, generation) = match self.active {
             Some((sector, generation)) => (1 - sector, generation.wrapping_add(1)),
@@ -116,7 +131,7 @@ impl BootLog {
         flash.erase(place(sector, 0), place(sector, 0) + SECTOR)?;
         let mut whole = true;
         let mut index = 1;
-        for kept in self.state.snapshot().chain([record]) {
+        for kept in self.state.snapshot().chain(record) {
             whole &= write(flash, sector, index, kept)?;
             index += 1;
         }

@@ -10,7 +10,8 @@
 //! | `AT+INFO`, `AT+DEVICE?`, `AT+FIRMWARE_VERSION?` | what is installed |
 //! | `AT+HELP` | this list |
 //!
-//! A line that does not begin with `AT` is somebody else's traffic: it is dropped without an answer.
+//! A line that does not begin with `AT` is somebody else's traffic: it is dropped without an answer. A byte that is no printable ASCII begins the line
+//! anew: a sender that was cancelled says good-bye with CAN and backspaces, and what is typed behind them counts.
 
 /// Bytes of a line; more than any command has.
 const MOST: usize = 48;
@@ -95,6 +96,10 @@ impl Lines {
 
     /// The next byte.
     pub fn byte(&mut self, byte: u8) -> Typed {
+        if !matches!(byte, b'\r' | b'\n' | b' '..=b'~') {
+            self.length = 0;
+            return Typed::Nothing;
+        }
         if !matches!(byte, b'\r' | b'\n') {
             if let Some(place) = self.line.get_mut(self.length) {
                 *place = byte;
@@ -156,6 +161,18 @@ mod tests {
     fn what_does_not_begin_with_at_is_somebody_elses() {
         assert_eq!(typed(b"\r\n\n$GPRMC,1\r\nat+lock=1\n XAT+LOCK=1\n"), []);
         assert_eq!(typed(&[b'x'; 1000]), []);
+    }
+
+    #[test]
+    fn what_a_cancelled_sender_leaves_does_not_hide_the_next_command() {
+        assert_eq!(
+            typed(b"\x18\x18\x18\x08\x08\x08AT+LOCK?\r"),
+            [Typed::Command(Command::IsLocked)]
+        );
+        assert_eq!(
+            typed(b"\x01\x02garbage\xFFAT+LOCK?\r"),
+            [Typed::Command(Command::IsLocked)]
+        );
     }
 
     #[test]

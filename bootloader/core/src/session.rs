@@ -145,6 +145,10 @@ impl<'a> Session<'a> {
             self.pump(machine, None);
         } else if now_ms >= VERIFY_AFTER_MS && self.verifier.verified().is_none() {
             self.verifier.step(&self.terms, machine.flash());
+            if self.log.needs_room() {
+                // Now, so that the window does not become longer by it. What fails here fails again where it is told.
+                let _ = self.log.make_room(machine.flash());
+            }
         }
         if self.outcome.is_none()
             && !self.locked

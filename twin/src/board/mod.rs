@@ -50,7 +50,7 @@ const SYNC_CYCLES: u64 = 2;
 /// The system clock the images set; ticks are defined by it.
 pub const TICK_HZ: u64 = 120_000_000;
 /// How long an image may take to start capture, and a host to open the port.
-const START_SECONDS: u64 = 4;
+const START_SECONDS: u64 = 6;
 /// How long a trigger level may take to settle behind its RC, ms: fourteen time constants.
 const SETTLE_MS: u64 = 140;
 /// FLARM's usual rate, bits a second (its data port specification).
