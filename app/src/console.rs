@@ -4,6 +4,7 @@
 
 use crate::port::{Outlet, Port};
 use crate::receiver::Receiver;
+use boot_contract::hand_over::{Cause, HandOver};
 use core::fmt::{self, Write};
 use hal::usb::{PACKET, UsbConsole};
 use shell::{BaudRateReply, LineReader, OK, ProtocolReply, Refusal, Request, Uart, help_lines};
@@ -114,7 +115,11 @@ pub fn answer(command: Result<Request, Refusal>, receiver: &mut Receiver) {
         Request::SetBaudRate { .. } => reply(&mut receiver.console, format_args!("{OK}")),
         Request::Reboot => {
             reply(&mut receiver.console, format_args!("{OK}"));
-            receiver.reboot_soon();
+            receiver.reboot_soon(HandOver::Restart(Cause::Command));
+        }
+        Request::RebootBootloader => {
+            reply(&mut receiver.console, format_args!("{OK}"));
+            receiver.reboot_soon(HandOver::Stay(Cause::Command));
         }
     }
 }

@@ -117,7 +117,7 @@ fn start() -> Option<core::convert::Infallible> {
         second: 0,
         second_ends_us: 1_000_000,
         last: (0, 0),
-        reboot_at_us: None,
+        reboot: None,
         confirm: Confirm::new(parts.flash),
     };
     let mut input = Console::new();

@@ -62,7 +62,8 @@ pub struct Receiver {
     pub second_ends_us: u64,
     /// Counts at the start of the second: demodulated, decoded.
     pub last: (u32, u32),
-    pub reboot_at_us: Option<u64>,
+    /// When to restart, microseconds of the timer, and what the bootloader is told.
+    pub reboot: Option<(u64, HandOver)>,
     pub confirm: Confirm,
 }
 
@@ -154,14 +155,16 @@ impl Receiver {
     }
 
     /// Restarts once the reply has had its time.
-    pub fn reboot_soon(&mut self) {
-        self.reboot_at_us = Some(timer::now_us() + REBOOT_AFTER_US);
+    pub fn reboot_soon(&mut self, words: HandOver) {
+        self.reboot = Some((timer::now_us() + REBOOT_AFTER_US, words));
     }
 
     /// Restarts if asked to and due.
     pub fn reboot_if_due(&self) {
-        if self.reboot_at_us.is_some_and(|at| timer::now_us() >= at) {
-            watchdog::reset(HandOver::Restart(Cause::Command).words());
+        if let Some((at_us, words)) = self.reboot
+            && timer::now_us() >= at_us
+        {
+            watchdog::reset(words.words());
         }
     }
 

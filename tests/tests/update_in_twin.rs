@@ -163,6 +163,23 @@ fn sb_updates_the_device_over_its_uart() {
 }
 
 #[test]
+fn the_app_goes_to_the_bootloader_when_asked_and_stays_there() {
+    let mut board = Board::power_on(&tests::image()).expect("the image is flashed");
+    device_line(&mut board);
+    let answer = ask(&mut board, Port::Console, "AT+REBOOT_BOOTLOADER", 20);
+    assert_eq!(answer, "OK\r\n");
+    board.run_ms(5_000).expect("the chip runs");
+    assert_eq!(
+        ask(&mut board, Port::Console, "AT+LOCK?", 20),
+        "AT+LOCK=1\r\n"
+    );
+    assert_eq!(
+        board.chip.bus.pio[0].enabled_at[0], 0,
+        "the app was started"
+    );
+}
+
+#[test]
 fn the_bootloader_answers_at_once_and_its_lock_holds() {
     let mut board = Board::power_on(&tests::image()).expect("the image is flashed");
     board.run_ms(100).expect("the chip runs");

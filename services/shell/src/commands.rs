@@ -39,6 +39,8 @@ pub enum Request {
     },
     /// `AT+REBOOT`
     Reboot,
+    /// `AT+REBOOT_BOOTLOADER`
+    RebootBootloader,
 }
 
 /// One row of the table.
@@ -49,7 +51,7 @@ struct Row {
     request: fn(Kind<'_>) -> Result<Request, Refusal>,
 }
 
-static TABLE: [Row; 5] = [
+static TABLE: [Row; 6] = [
     Row {
         name: "HELP",
         alias: None,
@@ -79,6 +81,12 @@ static TABLE: [Row; 5] = [
         alias: None,
         help: "Restarts the device.",
         request: |kind| bare(kind, Request::Reboot),
+    },
+    Row {
+        name: "REBOOT_BOOTLOADER",
+        alias: None,
+        help: "Restarts into the bootloader, which then stays until AT+LOCK=0.",
+        request: |kind| bare(kind, Request::RebootBootloader),
     },
 ];
 

@@ -157,7 +157,7 @@ impl Run {
             }
             let hex = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
             let exact = matches!(raw.frame.df().number(), 11 | 17..=19);
-            match (exact, raw.repaired) {
+            match (exact, raw.repaired()) {
                 (true, 0) if raw.frame.residual() == 0 => outcome.exact.push(hex),
                 (true, 1..) => outcome.repaired.push(hex),
                 _ => outcome.by_address.push(hex),
@@ -165,8 +165,9 @@ impl Run {
         });
         outcome.known = heard.len();
         outcome.counters = counters
-            .named()
+            .stages()
             .iter()
+            .chain(&counters.trials())
             .map(|(name, count)| (*name, u64::from(*count)))
             .collect();
         outcome
