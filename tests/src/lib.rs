@@ -2,6 +2,7 @@
 
 pub mod beast;
 pub mod cpu_peer;
+pub mod image_peer;
 pub mod power_cuts;
 pub mod profile;
 pub mod reception;

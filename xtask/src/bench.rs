@@ -46,7 +46,7 @@ const BENCHES: [(&str, &str); 11] = [
     ),
     (
         PEERS,
-        "random PIO programs in the twin and in an independent emulator, cycle by cycle [--programs N] [--seed S]",
+        "the twin beside three emulators: PIO programs, single-core images, CPU instructions [--programs N] [--instructions N] [--seed S] [--only pio|images|cpu]",
     ),
     (
         GOLDEN,

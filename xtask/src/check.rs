@@ -5,7 +5,7 @@ use std::process::Command;
 use crate::{edges, thumb, workspace};
 
 /// Firmware crates, which build for the chip only.
-const FIRMWARE: [&str; 4] = ["hal", "drivers", "bootloader", "app"];
+const FIRMWARE: [&str; 5] = ["hal", "drivers", "bootloader", "app", "peer-images"];
 
 /// Runs all of it; the first that fails ends it.
 pub fn run() -> Result<(), String> {

@@ -27,6 +27,13 @@ pub fn run() -> Result<(), String> {
             "sb is missing, which sends YMODEM to the bootloader's receiver; install it: apt-get install lrzsz".into(),
         );
     }
+    for program in ["node", "npm"] {
+        if Command::new(program).arg("--version").output().is_err() {
+            return Err(format!(
+                "{program} is missing, whose emulator the twin is compared with; install it: apt-get install nodejs npm"
+            ));
+        }
+    }
     check::run()?;
     println!("test: firmware images");
     fw::run()?;
@@ -38,7 +45,7 @@ pub fn run() -> Result<(), String> {
         .current_dir(workspace::root()?)
         .args(["test", "--no-fail-fast"]);
     workspace::run(&mut tests)?;
-    println!("test: the twin's PIO against an independent emulator");
+    println!("test: PIO programs and single-core images in the twin and in independent emulators");
     peers::test()?;
     println!("test: squitter decode against pyModeS");
     golden::bench(&[])?;
