@@ -54,7 +54,12 @@ extern "C" fn main() -> ! {
     let mut line = [0; 64];
     loop {
         device.poll(&mut [&mut serial]);
-        if device.state() != state {
+        // Not the idle bus before the first reset, which only one of the hosts has.
+        let reached = matches!(
+            device.state(),
+            UsbDeviceState::Addressed | UsbDeviceState::Configured
+        );
+        if reached && device.state() != state {
             state = device.state();
             record(0x01, state as u32);
         }
