@@ -4,7 +4,6 @@
 #![forbid(unsafe_code)]
 
 mod beast;
-mod completed;
 mod decode;
 mod device;
 mod hardware;

@@ -4,12 +4,12 @@ use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, Command};
+use twin::completed::Completed;
 use twin::front_end::PulseSource;
 use twin::native;
 use twin::source::PRE_ROLL_PS;
 
 use crate::beast;
-use crate::completed::Completed;
 use crate::output::{self, Form, Heard, Printer};
 use crate::{Failure, device, radio};
 

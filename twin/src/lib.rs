@@ -9,6 +9,7 @@
 
 pub mod board;
 pub mod chip;
+pub mod completed;
 pub mod fault;
 pub mod front_end;
 pub mod image;

@@ -1,8 +1,11 @@
-//! The shipped image in the twin as a decoder: it hears, and what it says on the console is read.
+//! The shipped image in the twin as a decoder: it hears, and what it says on the console is read. Beast carries the bits as received, so what it repaired is
+//! completed here.
 
 use super::Decoded;
 use crate::beast::Reader;
+use mode_s::Frame;
 use twin::board::{Board, Playback};
+use twin::completed::Completed;
 use twin::front_end::PulseSource;
 
 /// After the air is silent the last frame needs this long to come out, ms.
@@ -22,6 +25,7 @@ pub struct Device {
     /// What the console said since playback began.
     pub said: Vec<u8>,
     reader: Reader,
+    completed: Completed,
 }
 
 impl Device {
@@ -39,6 +43,7 @@ impl Device {
             board,
             said: Vec::new(),
             reader: Reader::default(),
+            completed: Completed::default(),
         };
         device.ask("AT+PROTOCOL=CONSOLE,BEAST");
         device
@@ -83,6 +88,7 @@ impl Device {
         self.board.console_read();
         self.said.clear();
         self.reader = Reader::default();
+        self.completed = Completed::default();
         match self.board.play(source) {
             Ok(playback) => playback,
             Err(error) => panic!("{error}"),
@@ -97,15 +103,20 @@ impl Device {
             let said = self.board.console_read();
             let messages = self.reader.read(&said);
             self.said.extend(said);
-            frames.extend(messages.into_iter().map(|message| {
+            for message in messages {
                 let start = playback.start_tick as i64 / TICKS_A_COUNT;
                 let counts = message.stamp as i64 - STAMP_AFTER_ARRIVAL - start;
-                Decoded {
-                    bytes: message.bytes,
-                    repaired: 0,
+                // Neither a frame nor to be completed: a Mode A/C reply.
+                let Ok(received) = Frame::from_bytes(&message.bytes) else {
+                    continue;
+                };
+                let (frame, repaired) = self.completed.complete(&received);
+                frames.push(Decoded {
+                    bytes: frame.bytes().to_vec(),
+                    repaired,
                     arrival_ps: Some(counts * TWELVE_COUNTS_PS / 12),
-                }
-            }));
+                });
+            }
         }
         frames
     }

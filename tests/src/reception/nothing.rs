@@ -33,6 +33,9 @@ const PS_A_SECOND: u64 = 1_000_000_000_000;
 /// Transmitters of the replies.
 const FLEET: usize = 64;
 
+/// Remainders of 24 bits.
+const REMAINDERS: f64 = 16_777_216.0;
+
 /// One run.
 #[derive(Clone, Copy, Debug)]
 pub struct Run {
@@ -76,6 +79,20 @@ impl Outcome {
     /// All inventions.
     pub fn invented(&self) -> usize {
         self.exact.len() + self.repaired.len() + self.by_address.len()
+    }
+
+    /// Frames that chance gives, from the demodulator's counts of parities it tried: each fits once in 2^24, an address parity once for every known
+    /// address.
+    pub fn expected(&self) -> f64 {
+        let count = |name: &str| match self.counter(name) {
+            Some(count) => count as f64,
+            None => panic!("the demodulator counts no {name}"),
+        };
+        let by_parity = count("trials_exact");
+        let by_address = count("trials_address") + count("trials_address_repair");
+        // A repaired frame must be of a known address, too.
+        let known = self.known as f64 / REMAINDERS;
+        (by_parity + count("trials_repair") * known + by_address * self.known as f64) / REMAINDERS
     }
 
     /// A counter of the demodulator.
@@ -164,10 +181,10 @@ impl Run {
             }
         });
         outcome.known = heard.len();
-        outcome.counters = counters
-            .stages()
+        let (stages, trials) = (counters.stages(), counters.trials());
+        outcome.counters = stages
             .iter()
-            .chain(&counters.trials())
+            .chain(&trials)
             .map(|(name, count)| (*name, u64::from(*count)))
             .collect();
         outcome
