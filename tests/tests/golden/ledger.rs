@@ -27,6 +27,8 @@ pub enum Subject {
     Tracked(Field),
     /// The place of a tracked aircraft after a position message.
     TrackedPlace,
+    /// A field of a Comm-B register, by rs1090's name.
+    Register(&'static str),
 }
 
 /// One difference.

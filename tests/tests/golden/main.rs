@@ -7,12 +7,14 @@
 //!   pairs of positions ─────► cpr::global, cpr::local against the peers' own CPR
 //!   times and frames ───────► tracker against rs1090's fields and its own tracking of places
 //!   all places shown ───────► judged by hindsight: the whole track before and after each (`tracks`)
+//!   Comm-B replies ─────────► the registers found, against rs1090's decoders of them
 //! ```
 //! A difference is accepted only by a line in `accepted.rs`, with its reason and its exact count; any other one fails, and so does a
 //! count that moved. What it is not: it tells nothing of reception (both logs hold bytes) and nothing of fields that neither peer
 //! reads (NIC, on ground of DF11). rs1090 began as a fork of adsb_deku: a reading that both inherited counts as one opinion.
 
 mod accepted;
+mod commb;
 mod height;
 mod ledger;
 mod logs;
@@ -82,6 +84,7 @@ fn compare_log(log: Log, compared: [(Peer, u32); 2]) {
     let mut ledger = Ledger::new(log, ACCEPTED);
     let mut places = places::Pairs::default();
     let mut tracked = tracked::Tracked::new();
+    let mut comm_b = commb::CommB::new();
     for Heard { at_ms, frame } in &frames {
         let ours = view::ours(frame);
         let rs1090 = peer_rs1090::view(frame);
@@ -94,7 +97,9 @@ fn compare_log(log: Log, compared: [(Peer, u32); 2]) {
         );
         tracked.hear(&mut ledger, *at_ms, frame, rs1090.as_ref());
         compare_fields(&mut ledger, Peer::Rs1090, frame, &ours, rs1090);
-        places.hear(&mut ledger, frame, &Message::decode(frame));
+        let message = Message::decode(frame);
+        places.hear(&mut ledger, frame, &message);
+        comm_b.hear(&mut ledger, *at_ms, frame, &message);
     }
     ledger.close(compared);
 }

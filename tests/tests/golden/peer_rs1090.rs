@@ -14,7 +14,7 @@ use rs1090::decode::bds::bds65::{
     ADSBVersionAirborne, ADSBVersionSurface, AircraftOperationStatus,
 };
 use rs1090::decode::cpr::CPRFormat;
-use rs1090::decode::{DF, Message};
+use rs1090::decode::{DF, DownlinkRequest, Message};
 
 /// The message, where rs1090 takes the frame.
 pub fn message(frame: &Frame) -> Option<Message> {
@@ -29,19 +29,40 @@ pub fn view(frame: &Frame) -> Option<View> {
         view.insert(field, said);
     };
     let df = match &message.df {
-        DF::ShortAirAirSurveillance { vs, ac, ap, .. } => {
+        DF::ShortAirAirSurveillance {
+            vs,
+            cc,
+            sl,
+            ri,
+            ac,
+            ap,
+            ..
+        } => {
+            say(Field::CrossLink, Said::Whole((*cc).into()));
+            say(Field::SensitivityLevel, Said::Whole((*sl).into()));
+            say(Field::ReplyInformation, Said::Whole((*ri).into()));
             say(Field::VerticalStatus, Said::Whole((*vs).into()));
             say(Field::Altitude, Said::whole(ac.0));
             say(Field::Address, Said::Whole(ap.0.into()));
             0
         }
-        DF::SurveillanceAltitudeReply { fs, ac, ap, .. } => {
+        DF::SurveillanceAltitudeReply {
+            fs, dr, um, ac, ap, ..
+        } => {
+            say(Field::DownlinkRequest, request(*dr));
+            say(Field::UtilityInterrogator, Said::Whole(um.iis.into()));
+            say(Field::UtilityReservation, Said::Whole(um.ids as i64));
             say(Field::FlightStatus, Said::Whole(*fs as i64));
             say(Field::Altitude, Said::whole(ac.0));
             say(Field::Address, Said::Whole(ap.0.into()));
             4
         }
-        DF::SurveillanceIdentityReply { fs, id, ap, .. } => {
+        DF::SurveillanceIdentityReply {
+            fs, dr, um, id, ap, ..
+        } => {
+            say(Field::DownlinkRequest, request(*dr));
+            say(Field::UtilityInterrogator, Said::Whole(um.iis.into()));
+            say(Field::UtilityReservation, Said::Whole(um.ids as i64));
             say(Field::FlightStatus, Said::Whole(*fs as i64));
             say(Field::Squawk, Said::Text(id.to_string()));
             say(Field::Address, Said::Whole(ap.0.into()));
@@ -54,7 +75,11 @@ pub fn view(frame: &Frame) -> Option<View> {
             say(Field::Address, Said::Whole(icao.0.into()));
             11
         }
-        DF::LongAirAirSurveillance { vs, ac, ap, .. } => {
+        DF::LongAirAirSurveillance {
+            vs, sl, ri, ac, ap, ..
+        } => {
+            say(Field::SensitivityLevel, Said::Whole((*sl).into()));
+            say(Field::ReplyInformation, Said::Whole((*ri).into()));
             say(Field::VerticalStatus, Said::Whole((*vs).into()));
             say(Field::Altitude, Said::whole(ac.0));
             say(Field::Address, Said::Whole(ap.0.into()));
@@ -77,13 +102,23 @@ pub fn view(frame: &Frame) -> Option<View> {
             18
         }
         DF::ExtendedSquitterMilitary { .. } => 19,
-        DF::CommBAltitudeReply { fs, ac, ap, .. } => {
+        DF::CommBAltitudeReply {
+            fs, dr, um, ac, ap, ..
+        } => {
+            say(Field::DownlinkRequest, request(*dr));
+            say(Field::UtilityInterrogator, Said::Whole(um.iis.into()));
+            say(Field::UtilityReservation, Said::Whole(um.ids as i64));
             say(Field::FlightStatus, Said::Whole(*fs as i64));
             say(Field::Altitude, Said::whole(ac.0));
             say(Field::Address, Said::Whole(ap.0.into()));
             20
         }
-        DF::CommBIdentityReply { fs, id, ap, .. } => {
+        DF::CommBIdentityReply {
+            fs, dr, um, id, ap, ..
+        } => {
+            say(Field::DownlinkRequest, request(*dr));
+            say(Field::UtilityInterrogator, Said::Whole(um.iis.into()));
+            say(Field::UtilityReservation, Said::Whole(um.ids as i64));
             say(Field::FlightStatus, Said::Whole(*fs as i64));
             say(Field::Squawk, Said::Text(id.to_string()));
             say(Field::Address, Said::Whole(ap.0.into()));
@@ -93,6 +128,14 @@ pub fn view(frame: &Frame) -> Option<View> {
     };
     view.insert(Field::Df, Said::Whole(df));
     Some(view)
+}
+
+/// DR: what it has no name for is one to it.
+fn request(request: DownlinkRequest) -> Said {
+    Said::Whole(match request {
+        DownlinkRequest::Unknown => 31,
+        known => known as i64,
+    })
 }
 
 fn me(me: &ME) -> View {
@@ -183,6 +226,9 @@ fn operational(status: &AircraftOperationStatus) -> View {
                 (Field::Version, Said::Whole(version.into())),
                 (Field::TcasOperational, Said::Whole(class.acas.into())),
                 (Field::EsIn, Said::Whole(class.cdti.into())),
+                (Field::AirVelocity, Said::Whole(class.arv.into())),
+                (Field::TargetStateReport, Said::Whole(class.ts.into())),
+                (Field::TrajectoryChange, Said::Whole(class.tc.into())),
             ]);
             if let ADSBVersionAirborne::DOC9871AppendixC(v2) = &status.version {
                 for (field, value) in [
@@ -202,6 +248,7 @@ fn operational(status: &AircraftOperationStatus) -> View {
         AircraftOperationStatus::Surface(status) => {
             let class = &status.capability_class;
             let mut view = View::from([
+                (Field::OffsetApplied, Said::Whole(class.poe.into())),
                 (Field::EsIn, Said::Whole(class.es1090.into())),
                 (Field::B2Low, Said::Whole(class.b2_low.into())),
                 (Field::UatIn, Said::Whole(class.uat_in.into())),
@@ -218,6 +265,7 @@ fn operational(status: &AircraftOperationStatus) -> View {
                     (Field::NicA, v2.nic_a),
                     (Field::NacP, v2.nac_p),
                     (Field::Sil, v2.sil),
+                    (Field::SurfaceHeading, v2.track_angle_or_heading),
                     (Field::MagneticHeading, v2.horizontal_reference_direction),
                     (Field::SilSupplement, v2.sil_supplement),
                 ] {
@@ -276,6 +324,14 @@ fn velocity(velocity: &AirborneVelocity) -> View {
         .vertical_rate
         .map(|_| velocity.vrate_src == VerticalRateSource::BarometricPressureAltitude);
     let mut view = View::from([
+        (
+            Field::IntentChange,
+            Said::Whole(velocity.intent_change.into()),
+        ),
+        (
+            Field::IfrCapable,
+            Said::Whole(velocity.ifr_capability.into()),
+        ),
         (Field::Nacv, Said::Whole(velocity.nac_v.into())),
         (Field::VerticalRate, Said::whole(velocity.vertical_rate)),
         (Field::VerticalRateIsBarometric, Said::whole(is_barometric)),

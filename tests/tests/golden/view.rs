@@ -2,7 +2,7 @@
 
 use mode_s::{
     AltitudeSource, Body, Cpr, CprFormat, Frame, HorizontalVelocity, Me, Message,
-    OperationalStatus, Parity, SelectionSource, TargetState, Velocity,
+    OperationalStatus, Parity, ReplyControl, SelectionSource, TargetState, Velocity,
 };
 use std::collections::BTreeMap;
 
@@ -17,6 +17,18 @@ pub enum Field {
     /// VS: 1 on the ground.
     VerticalStatus,
     FlightStatus,
+    /// CC of DF0.
+    CrossLink,
+    /// SL.
+    SensitivityLevel,
+    /// RI.
+    ReplyInformation,
+    /// DR: 0, 1, 4, 5; the others are one to the peer, so they are 31 here.
+    DownlinkRequest,
+    /// IIS of UM.
+    UtilityInterrogator,
+    /// IDS of UM.
+    UtilityReservation,
     /// CA of DF11 and DF17; codes 1-3 are one reserved class to the peers, so they are 1 here.
     Capability,
     /// Feet, of any source.
@@ -90,6 +102,20 @@ pub enum Field {
     B2Low,
     SizeCode,
     AntennaOffset,
+    /// ARV.
+    AirVelocity,
+    /// TS.
+    TargetStateReport,
+    /// TC of the capability class.
+    TrajectoryChange,
+    /// POA.
+    OffsetApplied,
+    /// TRK/HDG.
+    SurfaceHeading,
+    /// IC.
+    IntentChange,
+    /// IFR.
+    IfrCapable,
 }
 
 /// What a decoder says of a field.
@@ -141,25 +167,44 @@ pub fn ours(frame: &Frame) -> View {
     match message.body {
         Body::AirAir {
             on_ground,
+            acas,
             altitude,
+            mv,
             ..
         } => {
+            if mv.is_none() {
+                say(Field::CrossLink, Said::Whole(acas.cross_link.into()));
+            }
+            let level = acas.sensitivity_level;
+            say(Field::SensitivityLevel, Said::Whole(level.into()));
+            let information = acas.reply_information;
+            say(Field::ReplyInformation, Said::Whole(information.into()));
             say(Field::VerticalStatus, Said::Whole(on_ground.into()));
             say(Field::Altitude, feet(altitude));
         }
         Body::AltitudeReply {
             flight_status,
+            control,
             altitude,
             ..
         } => {
+            view.append(&mut ours_control(control));
+            let mut say = |field, said| {
+                view.insert(field, said);
+            };
             say(Field::FlightStatus, Said::Whole(flight_status.0.into()));
             say(Field::Altitude, feet(altitude));
         }
         Body::IdentityReply {
             flight_status,
+            control,
             squawk,
             ..
         } => {
+            view.append(&mut ours_control(control));
+            let mut say = |field, said| {
+                view.insert(field, said);
+            };
             say(Field::FlightStatus, Said::Whole(flight_status.0.into()));
             say(Field::Squawk, Said::Text(format!("{:04o}", squawk.0)));
         }
@@ -179,6 +224,24 @@ pub fn ours(frame: &Frame) -> View {
         | Body::NotDecoded => {}
     }
     view
+}
+
+fn ours_control(control: ReplyControl) -> View {
+    let request = match control.downlink_request {
+        known @ (0 | 1 | 4 | 5) => known,
+        _ => 31,
+    };
+    View::from([
+        (Field::DownlinkRequest, Said::Whole(request.into())),
+        (
+            Field::UtilityInterrogator,
+            Said::Whole(control.interrogator().into()),
+        ),
+        (
+            Field::UtilityReservation,
+            Said::Whole(control.reservation().into()),
+        ),
+    ])
 }
 
 /// CA with the reserved codes 1-3 as one.
@@ -277,6 +340,11 @@ fn ours_velocity(velocity: &Velocity) -> View {
         view.insert(field, said);
     };
     say(Field::Nacv, Said::Whole(velocity.nacv.into()));
+    say(
+        Field::IntentChange,
+        Said::Whole(velocity.intent_change.into()),
+    );
+    say(Field::IfrCapable, Said::Whole(velocity.ifr_capable.into()));
     match velocity.horizontal {
         Some(HorizontalVelocity::Ground { speed_kt, track }) => {
             say(Field::GroundSpeed, Said::Whole(speed_kt.into()));
@@ -360,6 +428,14 @@ fn ours_operational(status: &OperationalStatus) -> View {
         (Field::B2Low, Said::whole(status.b2_low)),
         (Field::SizeCode, Said::whole(size)),
         (Field::AntennaOffset, Said::whole(offset)),
+        (Field::AirVelocity, Said::whole(status.air_velocity)),
+        (Field::TargetStateReport, Said::whole(status.target_state)),
+        (
+            Field::TrajectoryChange,
+            Said::whole(status.trajectory_change),
+        ),
+        (Field::OffsetApplied, Said::whole(status.offset_applied)),
+        (Field::SurfaceHeading, Said::whole(status.surface_heading)),
     ])
 }
 
