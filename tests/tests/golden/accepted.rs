@@ -27,9 +27,11 @@ pub static ACCEPTED: &[Accepted] = &[
     },
     Accepted {
         peer: Peer::Rs1090,
-        reason: "rs1090 reads a TIS-B velocity as one of ADS-B: its NACv is part of NACp, its GNSS-baro difference NACv and SIL (DO-260B 2.2.17.3.4)",
-        applies: |d| is_of_tisb_velocity(d, &[Field::Nacv, Field::GnssMinusBaro]),
-        counts: [0, 36],
+        reason: "rs1090 reads a TIS-B velocity as one of ADS-B: its IFR and NACv are NACp, its difference NACv and SIL (DO-260B 2.2.17.3.4)",
+        applies: |d| {
+            is_of_tisb_velocity(d, &[Field::IfrCapable, Field::Nacv, Field::GnssMinusBaro])
+        },
+        counts: [0, 45],
     },
     Accepted {
         peer: Peer::AdsbDeku,
@@ -184,6 +186,46 @@ pub static ACCEPTED: &[Accepted] = &[
         reason: "rs1090 reads a selected altitude of code 1 as none; the code less one is the value, so 1 is 0 ft",
         applies: |d| d.is_of(Field::SelectedByFms) && is_selected_at_zero(d),
         counts: [0, 41],
+    },
+    Accepted {
+        peer: Peer::Rs1090,
+        reason: "register 4,0: rs1090 rounds selected altitudes to hundreds of feet; here, as in pyModeS, they are the steps of 16 ft sent",
+        applies: |d| {
+            let name = [
+                Subject::Register("selected_mcp"),
+                Subject::Register("selected_fms"),
+            ];
+            let away = |(ours, theirs): (f64, f64)| (ours - theirs).abs();
+            name.contains(&d.subject)
+                && d.ours
+                    .number()
+                    .zip(d.theirs.number())
+                    .map(away)
+                    .is_some_and(|feet| feet <= 50.0)
+        },
+        counts: [9108, 174],
+    },
+    Accepted {
+        peer: Peer::Rs1090,
+        reason: "register 5,0: rs1090 takes -1 step of the turn rate for none; it is a number in two's complement (Doc 9871), and pyModeS reads it",
+        applies: |d| {
+            d.subject == Subject::Register("track_rate")
+                && d.ours == Said::Real(-0.031_25)
+                && d.theirs == Said::Nothing
+        },
+        counts: [1570, 22],
+    },
+    Accepted {
+        peer: Peer::Rs1090,
+        reason: "register 6,0: rs1090 takes -1 step of a vertical rate for 0; it is -32 ft/min in two's complement, and pyModeS reads it",
+        applies: |d| {
+            let name = [
+                Subject::Register("vrate_barometric"),
+                Subject::Register("vrate_inertial"),
+            ];
+            name.contains(&d.subject) && d.ours == Said::Whole(-32) && d.theirs == Said::Real(0.0)
+        },
+        counts: [3593, 36],
     },
 ];
 

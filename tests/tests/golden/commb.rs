@@ -9,7 +9,7 @@ use mode_s::bds::bds40::TargetSource;
 use mode_s::{Body, Frame, Known, MeBits, Message, Register, infer};
 use rs1090::decode::bds::{DecodedBds, decode_bds};
 use serde_json::Value;
-use tracker::Tracker;
+use tracker::{Heard, Tracker};
 
 /// What a register says, by rs1090's names.
 type Fields = Vec<(&'static str, Said)>;
@@ -38,7 +38,7 @@ impl CommB {
         {
             compare(ledger, frame, mb, &register);
         }
-        self.tracker.on_frame(message, at_ms);
+        self.tracker.on_frame(frame, message, Heard::at(at_ms));
     }
 
     fn known(&self, message: &Message, at_ms: u64) -> Known {

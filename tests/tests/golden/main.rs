@@ -108,7 +108,7 @@ fn compare_log(log: Log, compared: [(Peer, u32); 2]) {
 fn long_flight_is_read_as_the_peers_read_it() {
     compare_log(
         Log::LongFlight,
-        [(Peer::Rs1090, 1_404_891), (Peer::AdsbDeku, 959_775)],
+        [(Peer::Rs1090, 1_947_873), (Peer::AdsbDeku, 959_775)],
     );
 }
 
@@ -116,6 +116,6 @@ fn long_flight_is_read_as_the_peers_read_it() {
 fn lax_log_is_read_as_the_peers_read_it() {
     compare_log(
         Log::Lax,
-        [(Peer::Rs1090, 2_110_023), (Peer::AdsbDeku, 1_431_203)],
+        [(Peer::Rs1090, 2_483_254), (Peer::AdsbDeku, 1_431_203)],
     );
 }
