@@ -22,6 +22,9 @@ const TURN: i64 = 3_600_000_000;
 /// 90° in 1e-7 degrees.
 const QUARTER_TURN: i64 = TURN / 4;
 
+/// 360° in 1e-7 degrees, and 90°, without their factors of two.
+const UNITS_A_SPAN: i32 = 3_515_625;
+
 /// A place: degrees × 1e7, north and east positive, longitude in [-180°, 180°).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Position {
@@ -104,7 +107,7 @@ pub fn global(previous: Cpr, latest: Cpr, reference: Option<Position>) -> Option
     let zone = (59 * i64::from(even.latitude) - 60 * i64::from(odd.latitude) + STEPS / 2) >> BITS;
     let south_or_north = |cpr: Cpr| {
         let zones = 60 - cpr.format.index();
-        let angle = place(kind.span(), zones, zone.rem_euclid(zones), cpr.latitude);
+        let angle = place(kind.span(), zones, zone_number(zone, zones), cpr.latitude);
         match reference {
             None if angle >= 3 * QUARTER_TURN => angle - TURN,
             None => angle,
@@ -126,7 +129,12 @@ pub fn global(previous: Cpr, latest: Cpr, reference: Option<Position>) -> Option
     let zone =
         (i64::from(even.longitude) * (nl - 1) - i64::from(odd.longitude) * nl + STEPS / 2) >> BITS;
     let zones = (nl - latest.format.index()).max(1);
-    let mut longitude = place(kind.span(), zones, zone.rem_euclid(zones), latest.longitude);
+    let mut longitude = place(
+        kind.span(),
+        zones,
+        zone_number(zone, zones),
+        latest.longitude,
+    );
     if let Some(near) = reference {
         longitude = nearest_quarter(longitude, near.longitude);
     }
@@ -150,23 +158,58 @@ pub fn local(cpr: Cpr, near: Position) -> Option<Position> {
     })
 }
 
+/// Number of a zone, 0 to `zones` - 1, of one counted past either end. At most 60 either way.
+fn zone_number(zone: i64, zones: i64) -> i64 {
+    i64::from((zone as i32).rem_euclid(zones as i32))
+}
+
 /// Of the solutions 90° apart that a surface pair leaves, the nearest to `near`.
 fn nearest_quarter(angle: i64, near: i32) -> i64 {
-    let away = angle - i64::from(near) + QUARTER_TURN / 2;
-    angle - away.div_euclid(QUARTER_TURN) * QUARTER_TURN
+    let mut angle = angle;
+    while angle - i64::from(near) >= QUARTER_TURN / 2 {
+        angle -= QUARTER_TURN;
+    }
+    while angle - i64::from(near) < -QUARTER_TURN / 2 {
+        angle += QUARTER_TURN;
+    }
+    angle
 }
 
 /// Angle at `steps` inside zone number `zone` of `zones` zones that span `span`, rounded to nearest.
 fn place(span: i64, zones: i64, zone: i64, steps: u32) -> i64 {
-    let whole = zones << BITS;
-    (span * ((zone << BITS) + i64::from(steps)) + whole / 2).div_euclid(whole)
+    // span (zone 2^17 + steps) / (zones 2^17), and half a unit; floors of floors are the floor of all.
+    let in_zones = (span * ((zone << BITS) + i64::from(steps)) + (zones << (BITS - 1))) >> BITS;
+    floor_div(in_zones, zones as u32)
 }
 
 /// The same in the zone that puts it nearest to `near`.
 fn nearest(span: i64, zones: i64, steps: u32, near: i64) -> i64 {
-    let away = ((near * zones) << BITS) - span * i64::from(steps) + (span << (BITS - 1));
-    let zone = away.div_euclid(span << BITS);
+    let in_zones = near * zones;
+    // Both spans are UNITS_A_SPAN times a power of two, so the quotient needs 32 bits alone.
+    let shift = span.trailing_zeros();
+    let zone = i64::from(((in_zones >> shift) as i32).div_euclid(UNITS_A_SPAN));
+    // What is left, and the steps, as parts of a zone in units of span / 2^17: half a zone apart or more is another zone.
+    let left = (in_zones - zone * span) << BITS;
+    let (steps_in, half) = (span * i64::from(steps), span << (BITS - 1));
+    let zone = if left - steps_in >= half {
+        zone + 1
+    } else if left - steps_in < -half {
+        zone - 1
+    } else {
+        zone
+    };
     place(span, zones, zone, steps)
+}
+
+/// Floor of `value / by`, where `by` is a number of zones and the result an angle: two divisions of 32 bits, where one of 64 costs the
+/// processor a thousand cycles.
+fn floor_div(value: i64, by: u32) -> i64 {
+    // Makes the value positive: no angle is below -2^33 units.
+    const LIFT: i64 = 1 << 33;
+    let lifted = value + LIFT * i64::from(by);
+    let (high, low) = ((lifted >> 16) as u32, lifted as u32 & 0xFFFF);
+    let rest = (high % by) << 16 | low;
+    (i64::from(high / by) << 16) + i64::from(rest / by) - LIFT
 }
 
 fn checked_latitude(latitude: i64) -> Option<i32> {
@@ -174,7 +217,15 @@ fn checked_latitude(latitude: i64) -> Option<i32> {
 }
 
 fn wrapped_longitude(longitude: i64) -> i32 {
-    ((longitude + TURN / 2).rem_euclid(TURN) - TURN / 2) as i32
+    // At most a turn away: places beside the date line, and solutions of a surface pair beyond it.
+    let longitude = if longitude >= TURN / 2 {
+        longitude - TURN
+    } else if longitude < -TURN / 2 {
+        longitude + TURN
+    } else {
+        longitude
+    };
+    longitude as i32
 }
 
 #[cfg(test)]

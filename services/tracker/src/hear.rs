@@ -17,7 +17,7 @@
 //! | target state | selected altitude, heading and pressure setting, autopilot modes, status (NACp, SIL, NICbaro, TCAS); TCAS RA and emergency state in version 1 |
 //! | operational status | version, status, NACv, airframe, TCAS RA, IDENT |
 //!
-//! A ground station's message about an aircraft (TIS-B, ADS-R: DF18 of CF 2-6) counts as heard, but changes nothing while the aircraft's own
+//! A ground station's message about an aircraft (TIS-B, ADS-R: DF18 of CF 2, 5 and 6) counts as heard, but changes nothing while the aircraft's own
 //! squitters are fresh: what the station tells is older, and where radar told it, less exact.
 
 use crate::aircraft::{Aircraft, PositionSource};
@@ -35,7 +35,8 @@ use mode_s::{AltitudeFt, Body, Cpr, FlightStatus, MeBits, Message, ModeACode, Or
 const DIFFERENCE_LIFE_MS: u32 = 10_000;
 /// How long speed and track limit where a position may have moved, ms. Later the aircraft may have others.
 const MOTION_LIFE_MS: u32 = 10_000;
-/// How long an aircraft's own squitters keep those of ground stations out, ms: ten of its positions at the slowest rate of a moving aircraft.
+/// How long an aircraft's own squitters keep those of ground stations out, ms. It sends four a second in the air: when none is heard for so long, it is
+/// out of range or behind a mountain, and the station sees it better.
 const DIRECT_LIFE_MS: u32 = 20_000;
 
 /// One frame of an aircraft.

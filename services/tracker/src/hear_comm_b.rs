@@ -56,8 +56,8 @@ impl Aircraft {
                 self.hear_static_pressure(told.pressure_hpa, at_ms);
                 self.hear_turbulence(told.turbulence, at_ms);
                 if let Some(parts) = told.humidity_64ths {
-                    // 64ths of a hundred; two more than a hundred fit the field.
-                    self.humidity = (u16::from(parts) * 100 / 64).min(100) as u8;
+                    // Six bits of 64ths: 98 at most.
+                    self.humidity = (u16::from(parts) * 100 / 64) as u8;
                     self.tell(Field::Humidity, at_ms);
                 }
             }

@@ -44,7 +44,7 @@ pub struct Tracker<const N: usize> {
     last_second_ms: u64,
 }
 
-/// RAM of the tracker of the receiver, bytes: the budget of docs/adr/0008 and the architecture.
+/// RAM of the receiver's tracker, bytes: its part of the chip's 264 KiB, beside rings, stacks, ports and the code of core 1.
 const MOST_BYTES: usize = 96 * 1024;
 const _: () = assert!(size_of::<Tracker<400>>() <= MOST_BYTES);
 
