@@ -9,6 +9,8 @@
 //! | rs1090 | `Message::try_from`, without its guessing of Comm-B registers |
 //! | adsb_deku | `Frame::from_bytes`; it checks no parity |
 //!
+//! `--cycles`: the cycles alone.
+//!
 //! Rows take turns, [`ROUNDS`] times; the median counts. Cycles: the image hears a log with its ports silent; everything that core 0 spends in
 //! `mode_s`, `tracker`, the receiver's loop over frames and the compiler's memory and division functions, by frames decoded. The ends of seconds are in it.
 
@@ -112,6 +114,11 @@ fn adsb_deku(frames: &[Sample]) -> usize {
 
 fn run() -> Result<(), String> {
     let mut bench = Bench::new("decode", "what,value,unit");
+    if std::env::args().any(|argument| argument == "--cycles") {
+        let cycles = cycles(&mut bench)?;
+        println!("result: cycles={cycles:.0}");
+        return Ok(());
+    }
     let frames = frames();
     let rates = rates(&mut bench, &frames);
     let rate = |name: &str| rates.get(name).copied().unwrap_or(f64::NAN);
