@@ -7,7 +7,7 @@ use std::process::Command;
 use crate::{fw, golden, peers, workspace};
 
 /// The benchmarks and what they measure.
-const BENCHES: [(&str, &str); 11] = [
+const BENCHES: [(&str, &str); 12] = [
     (
         "twin",
         "emulated MHz and share of real time: one core, two cores, two cores with capture and DMA, the image on real traffic",
@@ -39,6 +39,10 @@ const BENCHES: [(&str, &str); 11] = [
     (
         "decode",
         "frames a second from bytes to fields beside rs1090 and adsb_deku; cycles a frame in the twin; bytes an aircraft",
+    ),
+    (
+        "power-cuts",
+        "--update: the power fails at every flash operation of updates and inside it, on the host; --seeds N, --twice",
     ),
     (
         "cpu-peers",

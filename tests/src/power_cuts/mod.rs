@@ -23,6 +23,12 @@ const IMAGE: usize = 6000;
 /// Starts of a bad image before it is given up: three tries, then the other one runs.
 const BAD_STARTS: usize = 4;
 
+/// Lines in the log when a campaign begins: none, and so many that the move to the other sector falls into each part of the script, which writes
+/// sixteen.
+pub fn log_lengths() -> impl Iterator<Item = usize> {
+    std::iter::once(0).chain(110..127)
+}
+
 /// The releases and what happens to them, in order.
 pub struct Script {
     keys: [[u8; PUBLIC_KEY]; 1],
