@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::altitude::AltitudeFt;
+use crate::angle::CentiDegrees;
 use crate::bds::bds17::GicbCapability;
 use crate::frame::tests::frame;
 use proptest::prelude::*;
@@ -53,6 +54,34 @@ fn a_register_that_is_not_announced_is_not_found() {
         ..Known::NOTHING
     };
     assert_eq!(infer(mb(hex), &known).found(), None);
+}
+
+/// Frames of the long flight whose numbers are possible in both registers, with the ADS-B velocity just before: it decides.
+#[test]
+fn what_is_known_decides_between_5_0_and_6_0() {
+    for (hex, bds, ground_speed_kt, track, vertical_rate_fpm) in [
+        ("A8200800F299330F20840F9DD6E3", 0x60, 156, 32_284, 512),
+        ("A8000800FC3A2D20208C12377821", 0x60, 338, 35_285, 576),
+        ("A8000800FFD821077FDC22F9B858", 0x50, 58, 18_296, 0),
+        ("A8000800FFB825073FFC21ADA84B", 0x50, 55, 18_312, 0),
+    ] {
+        match infer(mb(hex), &Known::NOTHING) {
+            Inference::Ambiguous(candidates) => {
+                assert!(candidates.iter().eq([Bds(0x50), Bds(0x60)]), "{hex}");
+            }
+            other => panic!("{hex}: {other:?}"),
+        }
+        let known = Known {
+            ground_speed_kt: Some(ground_speed_kt),
+            track: Some(CentiDegrees(track)),
+            vertical_rate_fpm: Some(vertical_rate_fpm),
+            ..Known::NOTHING
+        };
+        let found = infer(mb(hex), &known)
+            .found()
+            .map(|register| register.bds());
+        assert_eq!(found, Some(Bds(bds)), "{hex}");
+    }
 }
 
 proptest! {
