@@ -12,7 +12,7 @@
 
 use std::collections::VecDeque;
 
-use super::usb::{Handshake, Usb};
+use super::usb::{Data, Handshake, Usb};
 
 /// Transactions a frame holds.
 const SLOTS: u64 = 19;
@@ -52,6 +52,9 @@ enum State {
 struct Endpoints {
     bulk_in: usize,
     bulk_out: usize,
+    /// The PID that the next packet of each must have.
+    in_pid: bool,
+    out_pid: bool,
 }
 
 /// The host and its view of the device.
@@ -63,13 +66,27 @@ pub struct UsbHost {
     idle_since: u64,
     slot: u64,
     next: u64,
+    /// Cycle at which the frame began.
+    frame_start: u64,
+    /// The host sends no frames.
+    asleep: bool,
+    /// The device may end that.
+    may_wake: bool,
     queue: VecDeque<Control>,
     stage: Stage,
     moved: usize,
     buffer: Vec<u8>,
     started: u64,
     packet0: usize,
+    /// PID of the next packet of a control transfer.
+    pid0: bool,
     endpoints: Endpoints,
+    /// Packets the device sent again, or with the wrong PID: acknowledged and dropped.
+    pub repeated: u64,
+    /// Bulk packets moved, in all and in the fullest frame.
+    pub packets: u64,
+    pub most_in_a_frame: u64,
+    in_this_frame: u64,
     /// Descriptors read, in order: (type, bytes).
     pub descriptors: Vec<(u8, Vec<u8>)>,
     /// The port is configured and DTR is set.
@@ -97,13 +114,21 @@ impl Default for UsbHost {
             idle_since: 0,
             slot: 0,
             next: 0,
+            frame_start: 0,
+            asleep: false,
+            may_wake: false,
             queue: VecDeque::new(),
             stage: Stage::Setup,
             moved: 0,
             buffer: Vec::new(),
             started: 0,
             packet0: 64,
+            pid0: false,
             endpoints: Endpoints::default(),
+            repeated: 0,
+            packets: 0,
+            most_in_a_frame: 0,
+            in_this_frame: 0,
             descriptors: Vec::new(),
             open: false,
             reading: true,
@@ -146,25 +171,78 @@ impl UsbHost {
         self.stage = Stage::Setup;
     }
 
-    /// One slot at cycle `now`; `cycles_per_ms` sets the pace. Returns whether the device saw anything.
-    pub fn advance(&mut self, usb: &mut Usb, now: u64, cycles_per_ms: u64) -> bool {
+    /// Puts the bus to sleep (no frames any longer), or ends that.
+    pub fn sleep(&mut self, asleep: bool) {
+        self.asleep = asleep;
+    }
+
+    /// The host sends no frames.
+    pub fn asleep(&self) -> bool {
+        self.asleep
+    }
+
+    /// Lets the device end a sleep, as SET_FEATURE(DEVICE_REMOTE_WAKEUP) does.
+    pub fn allow_wake(&mut self) {
+        self.may_wake = true;
+        self.request([0x00, 3, 1, 0, 0, 0, 0, 0], &[]);
+    }
+
+    /// Another slot, and a frame after the last. Slots divide the frame evenly.
+    fn count_slot(&mut self, now: u64, cycles_per_ms: u64) {
         self.slot += 1;
-        self.next = now + (cycles_per_ms / SLOTS).max(1);
         if self.slot >= SLOTS {
             self.slot = 0;
             self.frame += 1;
+            self.frame_start = now;
+            self.in_this_frame = 0;
         }
+        let next = self.frame_start + cycles_per_ms * (self.slot + 1) / SLOTS;
+        self.next = next.max(now + 1);
+    }
+
+    /// Nothing happens on the bus; after 3 ms of that the device is suspended. True if that is now.
+    fn idle(&self, usb: &mut Usb) -> bool {
+        let now = self.idle_since + SUSPEND_FRAMES == self.frame && self.slot == 0;
+        if now {
+            usb.suspend();
+        }
+        now
+    }
+
+    /// The host sleeps: it wakes when told to, or by the device.
+    fn sleeps(&mut self, usb: &mut Usb) -> bool {
+        if usb.take_wake_request() && self.may_wake {
+            self.asleep = false;
+        }
+        if self.asleep {
+            return true;
+        }
+        if usb.suspended() {
+            usb.resume();
+        }
+        false
+    }
+
+    /// One slot at cycle `now`; `cycles_per_ms` sets the pace. Returns whether the device saw anything.
+    pub fn advance(&mut self, usb: &mut Usb, now: u64, cycles_per_ms: u64) -> bool {
+        self.count_slot(now, cycles_per_ms);
         if !self.plugged || !usb.attached() {
             if self.state != State::Detached {
                 self.detach();
                 self.idle_since = self.frame;
                 usb.disconnect();
             }
-            // Without a host nobody sends frames, and a bus that is idle so long is a suspended one.
-            if self.idle_since + SUSPEND_FRAMES == self.frame && self.slot == 0 {
-                usb.suspend();
-            }
+            self.idle(usb);
             return false;
+        }
+        if self.state == State::Running {
+            if self.sleeps(usb) {
+                return self.idle(usb);
+            }
+            self.idle_since = self.frame;
+            if self.slot == 0 {
+                usb.start_of_frame(self.frame as u32);
+            }
         }
         match self.state {
             State::Detached => {
@@ -184,14 +262,8 @@ impl UsbHost {
                 }
                 false
             }
-            State::Running => {
-                usb.start_of_frame(self.frame as u32);
-                if self.queue.is_empty() {
-                    self.bulk(usb)
-                } else {
-                    self.control(usb)
-                }
-            }
+            State::Running if self.queue.is_empty() => self.bulk(usb),
+            State::Running => self.control(usb),
         }
     }
 
@@ -228,6 +300,7 @@ impl UsbHost {
         let answer = match self.stage {
             Stage::Setup => {
                 usb.setup(transfer.setup);
+                self.pid0 = true;
                 self.started = self.frame;
                 self.buffer.clear();
                 self.moved = 0;
@@ -241,24 +314,37 @@ impl UsbHost {
             Stage::DataIn | Stage::StatusIn => usb.token_in(0),
             Stage::DataOut => {
                 let end = (self.moved + self.packet0).min(transfer.data.len());
-                usb.token_out(0, &transfer.data[self.moved..end])
+                let bytes = transfer.data[self.moved..end].to_vec();
+                let pid = self.pid0;
+                usb.token_out(0, &Data { pid, bytes })
             }
-            Stage::StatusOut => usb.token_out(0, &[]),
+            Stage::StatusOut => {
+                let (pid, bytes) = (true, Vec::new());
+                usb.token_out(0, &Data { pid, bytes })
+            }
         };
+        // The status stage is always DATA1 (USB 2.0, 8.5.3).
+        let wanted = self.pid0 || self.stage == Stage::StatusIn;
         match (self.stage, answer) {
-            (_, Handshake::Nak) => return false,
+            (_, Handshake::Nak | Handshake::Silence) => return false,
+            (_, Handshake::Data(data)) if data.pid != wanted => {
+                self.repeated += 1;
+                return true;
+            }
             (_, Handshake::Stall) => {
                 self.fault(format!("control transfer {:02x?} stalled", transfer.setup));
                 return true;
             }
-            (Stage::DataIn, Handshake::Data(bytes)) => {
+            (Stage::DataIn, Handshake::Data(Data { bytes, .. })) => {
                 let short = bytes.len() < self.packet0;
+                self.pid0 = !self.pid0;
                 self.buffer.extend(&bytes);
                 if short || self.buffer.len() >= length {
                     self.stage = Stage::StatusOut;
                 }
             }
             (Stage::DataOut, Handshake::Ack) => {
+                self.pid0 = !self.pid0;
                 self.moved = (self.moved + self.packet0).min(transfer.data.len());
                 if self.moved == transfer.data.len() {
                     self.stage = Stage::StatusIn;
@@ -320,21 +406,55 @@ impl UsbHost {
             return false;
         }
         if self.slot.is_multiple_of(2) && !self.to_device.is_empty() {
-            let packet: Vec<u8> = self.to_device.iter().take(64).copied().collect();
-            if usb.token_out(self.endpoints.bulk_out, &packet) == Handshake::Ack {
-                self.to_device.drain(..packet.len());
-                return true;
+            let bytes: Vec<u8> = self.to_device.iter().take(64).copied().collect();
+            let (pid, len) = (self.endpoints.out_pid, bytes.len());
+            match usb.token_out(self.endpoints.bulk_out, &Data { pid, bytes }) {
+                Handshake::Ack => {
+                    self.endpoints.out_pid = !pid;
+                    self.to_device.drain(..len);
+                    self.count_packet();
+                    return true;
+                }
+                Handshake::Stall => self.clear_halt(self.endpoints.bulk_out),
+                _ => {}
             }
         }
-        if self.reading
-            && self.room
-            && let Handshake::Data(bytes) = usb.token_in(self.endpoints.bulk_in)
-        {
-            self.received += bytes.len() as u64;
-            self.from_device.extend(bytes);
-            return true;
+        if !self.reading || !self.room {
+            return false;
         }
-        false
+        match usb.token_in(self.endpoints.bulk_in) {
+            Handshake::Data(Data { pid, .. }) if pid != self.endpoints.in_pid => {
+                self.repeated += 1;
+                true
+            }
+            Handshake::Data(Data { bytes, pid }) => {
+                self.endpoints.in_pid = !pid;
+                self.received += bytes.len() as u64;
+                self.from_device.extend(bytes);
+                self.count_packet();
+                true
+            }
+            Handshake::Stall => {
+                self.clear_halt(self.endpoints.bulk_in | 0x80);
+                false
+            }
+            _ => false,
+        }
+    }
+
+    fn count_packet(&mut self) {
+        self.packets += 1;
+        self.in_this_frame += 1;
+        self.most_in_a_frame = self.most_in_a_frame.max(self.in_this_frame);
+    }
+
+    /// A bulk endpoint is halted: the host asks the device to go on, from DATA0 (USB 2.0, 9.4.5).
+    fn clear_halt(&mut self, endpoint: usize) {
+        match endpoint & 0x80 {
+            0 => self.endpoints.out_pid = false,
+            _ => self.endpoints.in_pid = false,
+        }
+        self.request([0x02, 1, 0, 0, endpoint as u8, 0, 0, 0], &[]);
     }
 }
 

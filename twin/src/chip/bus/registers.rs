@@ -279,7 +279,7 @@ impl Bus {
         let at = offset & (DPRAM - 1);
         self.usb.dpram[at..at + size].copy_from_slice(&value.to_le_bytes()[..size]);
         if !self.usb.dpram_written(at & !3) {
-            self.not_modelled("double buffering by write", 0x5010_0000 + at as u32);
+            self.not_modelled("an isochronous endpoint by write", 0x5010_0000 + at as u32);
         }
     }
 
