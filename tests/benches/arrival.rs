@@ -7,16 +7,12 @@
 //! `--frames N`; `--nominal`: transmitters without tolerances.
 
 use tests::Bench;
-use tests::reception::native::{Rendered, SLICERS};
-use tests::reception::{Decoded, native};
+use tests::reception::arrival::{air, errors_ns, mean, quantile, rms};
+use tests::reception::native::SLICERS;
 use twin::front_end::Slicer;
-use twin::source::scene::traffic::{Range, Traffic};
-use twin::source::scene::{Scene, Tolerances};
+use twin::source::scene::Tolerances;
+use twin::source::scene::traffic::Range;
 
-use std::collections::HashMap;
-
-/// Distance of samples of the air, ps: 125 MHz, so that an edge's own error is far under a nanosecond.
-const STEP_PS: u64 = 8_000;
 /// Frames a level.
 const FRAMES: usize = 300;
 /// The levels, dB over the noise in 2 MHz.
@@ -30,7 +26,6 @@ const LEVELS: [(&str, Range); 6] = [
 ];
 /// The level whose mean is the delay.
 const CALIBRATED_AT: usize = 2;
-const PS_A_NS: f64 = 1000.0;
 
 fn main() -> std::io::Result<()> {
     if !tests::is_bench() {
@@ -42,24 +37,10 @@ fn main() -> std::io::Result<()> {
     } else {
         Tolerances::ANNEX_10
     };
-    let air: Vec<(Scene, Rendered)> = LEVELS
+    let air: Vec<_> = LEVELS
         .iter()
         .zip(1..)
-        .map(|((_, snr_db), number)| {
-            let traffic = Traffic {
-                seed: 120 * 1090 + number,
-                frames,
-                spacing_ps: 150_000_000,
-                jitter_ps: 25_000_000,
-                snr_db: *snr_db,
-                transmitters: 100,
-                tolerances,
-                ..Traffic::default()
-            };
-            let scene = traffic.scene();
-            let level = Rendered::of(&mut scene.wave(STEP_PS));
-            (scene, level)
-        })
+        .map(|((_, snr_db), number)| air(number, frames, *snr_db, tolerances))
         .collect();
     let mut bench = Bench::new("arrival", "slicer,level,frames,bias_ns,rms_ns,p999_ns");
     bench.line(&format!("error of the time of arrival, ns, of {frames} frames a level; the mean at 30 dB is taken off"));
@@ -92,40 +73,4 @@ fn main() -> std::io::Result<()> {
         }
     }
     bench.finish(&result.join(" "))
-}
-
-/// The error of each decoded frame's arrival.
-fn errors_ns(scene: &Scene, level: &Rendered, slicer: Slicer) -> Vec<f64> {
-    let noise_dbm = scene.noise_dbm.unwrap_or(f32::NEG_INFINITY);
-    let heard: Vec<Decoded> = native::run(level, slicer, noise_dbm).0;
-    let truth: HashMap<&[u8], u64> = scene
-        .emissions
-        .iter()
-        .filter_map(|emission| Some((emission.frame()?.bytes(), emission.arrival_ps())))
-        .collect();
-    let error = |frame: &Decoded| {
-        let sent = *truth.get(frame.bytes.as_slice())?;
-        Some((frame.arrival_ps? - sent as i64) as f64 / PS_A_NS)
-    };
-    heard.iter().filter_map(error).collect()
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
-}
-
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
-}
-
-/// The size that this share of the errors does not exceed.
-fn quantile(values: &[f64], share: f64) -> f64 {
-    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    let index = (sizes.len() as f64 * share).ceil() as usize;
-    index
-        .checked_sub(1)
-        .and_then(|i| sizes.get(i))
-        .copied()
-        .unwrap_or(f64::NAN)
 }

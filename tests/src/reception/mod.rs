@@ -2,6 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `arrival` | errors of the time of arrival |
 //! | `fair` | which decoded frames of a recording count |
 //! | `native` | a scene or recording through a slicer and the native engine |
 //! | `device` | the same through the shipped image in the twin |
@@ -13,6 +14,7 @@
 //! | `score` | decoded frames against a scene's truth |
 //! | `table` | the sensitivity table that is committed |
 
+pub mod arrival;
 pub mod device;
 pub mod fair;
 pub mod limit;

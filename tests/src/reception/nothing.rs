@@ -148,6 +148,8 @@ impl Run {
             replies: ModeAc::new(self.seed, self.mode_ac_hz, Range::new(0.0, 30.0)).peekable(),
         };
         let fleet = Arc::new(Fleet::new(self.seed, FLEET, &Tolerances::ANNEX_10));
+        let length_ps = options.length_ps;
+        let quiet = quiet.take_while(move |emission| emission.at_ps < length_ps);
         let wave = wave::Wave::new(fleet, Box::new(quiet), options);
         let mut player = Player::new(wave, &FrontEnd::with_slicer(self.slicer));
         let settings = Options {

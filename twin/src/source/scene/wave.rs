@@ -73,7 +73,7 @@ impl PathNoise {
 }
 
 impl Wave {
-    /// `emissions` come in order of time.
+    /// `emissions` come in order of time and end: the wave ends behind the last one, but not before its length.
     pub fn new(
         fleet: Arc<Fleet>,
         emissions: Box<dyn Iterator<Item = Emission> + Send>,
