@@ -1,7 +1,10 @@
 //! `squitter twin` on boards that have faults and keep their memories.
 
+use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn root() -> PathBuf {
     let manifest = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
@@ -105,4 +108,37 @@ fn memories_outlive_the_run_and_a_flip_in_the_file_is_refused_until_it_is_flashe
         "{said}"
     );
     std::fs::remove_dir_all(&folder).expect("the folder goes");
+}
+
+#[test]
+fn a_program_that_writes_faster_than_a_serial_line_takes_has_to_wait() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_squitter"))
+        .current_dir(root())
+        .args(["twin", "--seconds", "3", "--serial"])
+        .stderr(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("squitter runs");
+    let mut lines = BufReader::new(child.stderr.take().expect("a pipe")).lines();
+    let flarm = lines
+        .by_ref()
+        .map_while(Result::ok)
+        .find_map(|l| l.strip_prefix("FLARM").map(|path| path.trim().to_string()))
+        .expect("its path is told");
+    let taken = Arc::new(AtomicUsize::new(0));
+    let counted = Arc::clone(&taken);
+    let writer = std::thread::spawn(move || {
+        let terminal = std::fs::File::options().write(true).open(flarm);
+        let mut terminal = terminal.expect("it opens");
+        while let Ok(n) = terminal.write(&[b'$'; 1000]) {
+            counted.fetch_add(n, Ordering::Relaxed);
+        }
+    });
+    // The rest of what it tells, to its end.
+    let told: Vec<String> = lines.map_while(Result::ok).collect();
+    assert!(child.wait().expect("it ends").success(), "{told:?}");
+    writer.join().expect("the writer ends with the terminal");
+    let taken = taken.load(Ordering::Relaxed);
+    // 1 920 bytes a second, the port's queue of 4 096, and what the system's terminal holds.
+    assert!((4_096..200_000).contains(&taken), "{taken} bytes in 3 s");
 }

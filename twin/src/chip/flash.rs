@@ -94,7 +94,8 @@ impl Flash {
             // Status 1: never busy. Status 2: QE set.
             (0x05, 1..) => 0x00,
             (0x35, 1..) => 0x02,
-            (0x9f, 1..=3) => [0xef, 0x40, 0x15][n - 1],
+            // Winbond, Q family, log2 of the size (W25Q16: 15h, W25Q128: 18h).
+            (0x9f, 1..=3) => [0xef, 0x40, self.bytes.len().ilog2() as u8][n - 1],
             (0x4b, 5..=12) => self.unique_id[n - 5],
             _ => 0xff,
         }
