@@ -24,6 +24,7 @@ mod profile;
 mod pwm;
 mod rom;
 mod sio;
+pub mod spi;
 mod syscfg;
 mod systick;
 mod time;

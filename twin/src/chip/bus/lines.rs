@@ -1,9 +1,10 @@
 //! Pads, and the wires that several parties share: whoever moves a line, all others see it before time goes on.
 
 use super::Bus;
-use crate::chip::pins::functions::{self as f, I2C_PINS, PWM_PINS, UART_PINS};
+use crate::chip::pins::functions::{self as f, I2C_PINS, PWM_PINS, SPI_PINS, UART_PINS};
 use crate::chip::pins::{Drivers, SYNC_CYCLES};
 use crate::chip::pio::Pio;
+use crate::chip::spi::Spi;
 
 /// Rounds after which the parties on a line have settled: each can answer the other once (a device that acknowledges, a controller that
 /// sees it), and nothing answers an answer within a cycle.
@@ -35,6 +36,7 @@ impl Bus {
         self.drive_pins();
         self.sense_cts();
         self.sense_pwm();
+        self.sense_spi();
         for _ in 0..ROUNDS {
             if !self.settle_i2c(0) & !self.settle_i2c(1) {
                 return;
@@ -63,7 +65,13 @@ impl Bus {
         } else {
             self.pwm_levels()
         };
+        let spi = if self.pins.selected(f::SPI, u32::MAX) == 0 {
+            (0, 0)
+        } else {
+            self.spi_levels()
+        };
         self.pins.resolve(&Drivers {
+            spi,
             uart,
             pwm,
             sio: (self.sio.out, self.sio.oe),
@@ -88,6 +96,33 @@ impl Bus {
             }
         }
         (levels, enables)
+    }
+
+    /// What the SPI controllers put on their pins.
+    fn spi_levels(&self) -> (u32, u32) {
+        let (mut levels, mut enables) = (0, 0);
+        for (spi, pins) in self.spi.iter().zip(SPI_PINS) {
+            let (csn, sck, tx) = spi.outputs(self.pins.now);
+            for (signal, level) in [(f::spi::CSN, csn), (f::spi::SCK, sck), (f::spi::TX, tx)] {
+                enables |= pins[signal];
+                levels |= if level { pins[signal] } else { 0 };
+            }
+        }
+        (levels, enables)
+    }
+
+    /// Shows the SPI controllers their RX, and the devices on their wires the select lines.
+    fn sense_spi(&mut self) {
+        let some = self.pins.selected(f::SPI, u32::MAX) != 0;
+        if !some && !self.spi.iter().any(Spi::has_devices) {
+            return;
+        }
+        let time_ps = self.true_ps();
+        let levels = self.pins.levels();
+        for (spi, pins) in self.spi.iter_mut().zip(SPI_PINS) {
+            let rx = self.pins.peripheral_input(f::SPI, pins[f::spi::RX]);
+            spi.sense(levels, rx, time_ps);
+        }
     }
 
     /// What the PWM slices put on their pins.

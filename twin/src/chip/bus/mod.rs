@@ -44,6 +44,7 @@ use super::pins::Pins;
 use super::pio::Pio;
 use super::pwm::Pwm;
 use super::sio::Sio;
+use super::spi::Spi;
 use super::syscfg::Syscfg;
 use super::systick::SysTick;
 use super::time::Instant;
@@ -67,6 +68,7 @@ mod irq {
     pub const DMA_0: u32 = 11;
     pub const IO_BANK0: u32 = 13;
     pub const SIO_PROC0: u32 = 15;
+    pub const SPI0: u32 = 18;
     pub const UART0: u32 = 20;
     pub const ADC_FIFO: u32 = 22;
     pub const I2C0: u32 = 23;
@@ -124,6 +126,7 @@ pub struct Bus {
     pub dma: Dma,
     pub uart: [Uart; 2],
     pub i2c: [I2c; 2],
+    pub spi: [Spi; 2],
     pub adc: Adc,
     pub timer: Timer,
     pub systick: [SysTick; 2],
@@ -196,6 +199,7 @@ impl Bus {
             dma: Dma::default(),
             uart: [Uart::default(), Uart::default()],
             i2c: [I2c::new(0), I2c::new(1)],
+            spi: [Spi::default(), Spi::default()],
             adc: Adc::default(),
             timer: Timer::default(),
             systick: [SysTick::default(); 2],
@@ -310,6 +314,9 @@ impl Bus {
         for uart in &mut self.uart {
             uart.set_clock(self.clocks.peri_hz(), self.sys_hz);
         }
+        for spi in &mut self.spi {
+            spi.set_clock(self.clocks.peri_hz(), self.sys_hz);
+        }
         self.adc
             .set_clock(self.clocks.adc_hz(), self.sys_hz, self.now);
         for systick in &mut self.systick {
@@ -390,6 +397,7 @@ impl Bus {
             }
             lines |= u32::from(self.dma.irq_line(block)) << (irq::DMA_0 + block as u32);
             lines |= u32::from(self.uart[block].irq_line()) << (irq::UART0 + block as u32);
+            lines |= u32::from(self.spi[block].irq_line()) << (irq::SPI0 + block as u32);
             lines |= u32::from(self.i2c[block].irq_line()) << (irq::I2C0 + block as u32);
         }
         std::array::from_fn(|core| {

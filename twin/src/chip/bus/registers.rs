@@ -45,6 +45,12 @@ impl Bus {
         if on(reset::UART1) {
             self.uart[1].reset();
         }
+        if on(reset::SPI0) {
+            self.spi[0].reset();
+        }
+        if on(reset::SPI1) {
+            self.spi[1].reset();
+        }
         if on(reset::ADC) {
             self.adc.reset();
         }
@@ -113,6 +119,10 @@ impl Bus {
                         self.resolve_pins();
                     }
                     value
+                }
+                0x4003_c000 | 0x4004_0000 => {
+                    let n = usize::from(base == 0x4004_0000);
+                    self.spi[n].read(offset, now)
                 }
                 0x4004_4000 | 0x4004_8000 => {
                     let n = usize::from(base == 0x4004_8000);
@@ -222,6 +232,12 @@ impl Bus {
             0x4003_4000 | 0x4003_8000 => {
                 let n = usize::from(base == 0x4003_8000);
                 let ok = self.uart[n].write(offset, value, now);
+                self.resolve_pins();
+                return ok;
+            }
+            0x4003_c000 | 0x4004_0000 => {
+                let n = usize::from(base == 0x4004_0000);
+                let ok = self.spi[n].write(offset, value, now);
                 self.resolve_pins();
                 return ok;
             }

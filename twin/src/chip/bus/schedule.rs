@@ -12,18 +12,21 @@ enum Actor {
     Timer,
     Uart(usize),
     I2c(usize),
+    Spi(usize),
     Adc,
     SysTick(usize),
     Pwm,
     Watchdog,
 }
 
-const ACTORS: [Actor; 10] = [
+const ACTORS: [Actor; 12] = [
     Actor::Timer,
     Actor::Uart(0),
     Actor::Uart(1),
     Actor::I2c(0),
     Actor::I2c(1),
+    Actor::Spi(0),
+    Actor::Spi(1),
     Actor::Adc,
     Actor::SysTick(0),
     Actor::SysTick(1),
@@ -52,6 +55,7 @@ impl Bus {
             Actor::Timer => self.timer.next_event(),
             Actor::Uart(n) => self.uart[n].next_event(),
             Actor::I2c(n) => self.i2c[n].next_event(),
+            Actor::Spi(n) => self.spi[n].next_event(),
             Actor::Adc => self.adc.next_event(),
             Actor::SysTick(core) => self.systick[core].next_event(),
             Actor::Pwm => self.pwm.next_event(self.paced_by_pwm()),
@@ -72,6 +76,11 @@ impl Bus {
             }
             Actor::I2c(n) => {
                 self.i2c[n].advance(now);
+                self.resolve_pins();
+            }
+            Actor::Spi(n) => {
+                let time_ps = self.true_ps();
+                self.spi[n].advance(now, time_ps);
                 self.resolve_pins();
             }
             Actor::Adc => self.advance_adc(),

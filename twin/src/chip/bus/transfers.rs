@@ -23,6 +23,8 @@ impl Bus {
             4..=7 => self.pio[0].rx_request(n - 4),
             8..=11 => self.pio[1].tx_request(n - 8),
             12..=15 => self.pio[1].rx_request(n - 12),
+            16 | 18 => Request::Ready(self.spi[(n - 16) / 2].tx_ready()),
+            17 | 19 => Request::Ready(self.spi[(n - 16) / 2].rx_ready()),
             20 => Request::Ready(self.uart[0].tx_ready()),
             21 => Request::Ready(self.uart[0].rx_ready()),
             22 => Request::Ready(self.uart[1].tx_ready()),
