@@ -2,7 +2,7 @@
 
 use super::{AnalogInput, Steady};
 use crate::chip::Chip;
-use crate::chip::test_chip::{FOREVER, chip, run};
+use crate::chip::test_chip::{FOREVER, chip, run, wait_for};
 
 const ADC: u32 = 0x4004_c000;
 const CS: u32 = ADC;
@@ -12,13 +12,13 @@ const FIFO: u32 = ADC + 0x0c;
 const DIV: u32 = ADC + 0x10;
 const READY: u32 = 1 << 8;
 
-/// A ramp: volts are milliseconds.
+/// A ramp of 0.1 V a millisecond.
 #[derive(Clone)]
 struct Ramp;
 
 impl AnalogInput for Ramp {
     fn volts(&mut self, time_ps: u128) -> f64 {
-        time_ps as f64 * 1e-9
+        time_ps as f64 * 1e-10
     }
     fn clone_box(&self) -> Box<dyn AnalogInput> {
         Box::new(self.clone())
@@ -28,16 +28,17 @@ impl AnalogInput for Ramp {
 /// A chip at 120 MHz with clk_adc at 48 MHz, channels 0 to 3 at 0.5, 1.0, 1.5, 2.0 V.
 fn adc() -> Chip {
     let mut chip = chip(&FOREVER);
-    // PLL_USB: 12 MHz × 40 / 5 / 2 = 48 MHz; clk_adc from it, enabled.
+    // PLL_USB: 12 MHz × 100 / 5 / 5 = 48 MHz; clk_adc from it, enabled.
     for (register, value) in [
         (0x4002_c000, 1),
-        (0x4002_c008, 40),
-        (0x4002_c00c, 5 << 16 | 2 << 12),
+        (0x4002_c008, 100),
+        (0x4002_c00c, 5 << 16 | 5 << 12),
         (0x4002_c004, 0),
-        (0x4000_8060, 1 << 11),
     ] {
         chip.bus.write32(register, value);
     }
+    wait_for(&mut chip, 0x4002_c000);
+    chip.bus.write32(0x4000_8060, 1 << 11);
     for channel in 0..4 {
         let volts = 0.5 * (channel + 1) as f64;
         chip.bus.adc.set_input(channel, Box::new(Steady(volts)));
@@ -68,7 +69,7 @@ fn the_input_is_held_at_the_start_of_the_conversion() {
     let mut chip = adc();
     chip.bus.adc.set_input(0, Box::new(Ramp));
     run(&mut chip, 60_000).expect("it runs");
-    let held = chip.bus.time_ps() as f64 * 1e-9;
+    let held = chip.bus.time_ps() as f64 * 1e-10;
     chip.bus.write32(CS, 1 << 2 | 1);
     run(&mut chip, 240).expect("it runs");
     assert_eq!(chip.bus.read32(RESULT), code(held));

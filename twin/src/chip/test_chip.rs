@@ -26,14 +26,20 @@ pub fn chip(code: &[u16]) -> Chip {
 pub fn prepare(chip: &mut Chip, code: &[u16]) {
     // The flash is empty on purpose: no program but the test's.
     assert_eq!(chip.bus.fault.take(), Some(Fault::Boot2));
+    chip.bus.write32(XOSC_CTRL, 0x00fa_baa0);
+    chip.bus.write32(RESETS, 0);
+    wait_for(&mut chip, XOSC_CTRL + 4);
     for (register, value) in [
-        (XOSC_CTRL, 0x00fa_baa0),
-        (RESETS, 0),
         // 12 MHz × 100 / 5 / 2.
         (PLL_SYS, 1),
         (PLL_SYS + 0x8, 100),
         (PLL_SYS + 0xc, 5 << 16 | 2 << 12),
         (PLL_SYS + 0x4, 0),
+    ] {
+        chip.bus.write32(register, value);
+    }
+    wait_for(&mut chip, PLL_SYS);
+    for (register, value) in [
         (CLK_REF_CTRL, 2),
         (CLK_SYS_CTRL, 1),
         (CLK_PERI_CTRL, 1 << 11),
@@ -50,6 +56,15 @@ pub fn prepare(chip: &mut Chip, code: &[u16]) {
     let regs = &mut chip.cores[0].cpu.regs;
     regs.msp = STACK;
     regs.r[13] = STACK;
+}
+
+/// Lets time pass until bit 31 of a register is set: a crystal is stable, a PLL has locked.
+pub fn wait_for(chip: &mut Chip, register: u32) {
+    while chip.bus.read32(register) >> 31 == 0 {
+        let until = chip.bus.now + 100;
+        chip.bus.advance(until);
+        chip.bus.core_time = until;
+    }
 }
 
 /// `b .`

@@ -68,6 +68,7 @@ mod irq {
     pub const DMA_0: u32 = 11;
     pub const IO_BANK0: u32 = 13;
     pub const SIO_PROC0: u32 = 15;
+    pub const CLOCKS: u32 = 17;
     pub const SPI0: u32 = 18;
     pub const UART0: u32 = 20;
     pub const ADC_FIFO: u32 = 22;
@@ -231,6 +232,12 @@ impl Bus {
 
     /// Everything back to its reset state but what survives: memories, scratch words, what is attached outside.
     pub fn reset(&mut self, cause: ResetCause) {
+        // Bits 0 and 1 of the watchdog's selection are the oscillators.
+        let oscillators = match cause {
+            ResetCause::PowerOn => true,
+            ResetCause::Software => false,
+            ResetCause::WatchdogTimer | ResetCause::WatchdogForced => self.psm_wdsel & 3 == 3,
+        };
         self.apply_resets(reset::ALL);
         self.resets = reset::ALL & !reset::BY_ROM;
         self.resets_wdsel = 0;
@@ -239,7 +246,7 @@ impl Bus {
         self.flash.reset();
         self.xip.reset();
         self.fabric.priority = 0;
-        self.clocks.reset();
+        self.clocks.reset(oscillators);
         self.sio = Sio::default();
         self.watchdog.reset(self.now);
         match cause {
@@ -301,6 +308,12 @@ impl Bus {
         self.time_ps = self.time_ps();
         self.since = self.now;
         self.sys_hz = self.clocks.sys_hz();
+        if self.sys_hz == 0
+            && let Some(us) = self.clocks.resuscitate()
+        {
+            self.time_ps += u128::from(us) * 1_000_000;
+            self.sys_hz = self.clocks.sys_hz();
+        }
         self.pins.clock_changed(self.now, self.sys_hz);
         self.time_surroundings();
         if self.sys_hz == 0 {
@@ -389,6 +402,7 @@ impl Bus {
         let mut lines = self.timer.irq_lines() << irq::TIMER_0;
         lines |= u32::from(self.usb.irq_line()) << irq::USBCTRL;
         lines |= u32::from(self.pwm.irq_line()) << irq::PWM_WRAP;
+        lines |= u32::from(self.clocks.irq_line()) << irq::CLOCKS;
         lines |= u32::from(self.adc.irq_line()) << irq::ADC_FIFO;
         for block in 0..2 {
             for line in 0..2 {

@@ -180,7 +180,7 @@ impl Bus {
         match base {
             0x4000_4000 => return self.syscfg.write(offset, value),
             0x4000_8000 => {
-                let ok = self.clocks.write_clocks(offset, value);
+                let ok = self.clocks.write_clocks(offset, value, now);
                 self.clocks_changed();
                 return ok;
             }
@@ -218,13 +218,13 @@ impl Bus {
                 return ok;
             }
             0x4002_4000 => {
-                let ok = self.clocks.write_xosc(offset, value);
+                let ok = self.clocks.write_xosc(offset, value, now);
                 self.clocks_changed();
                 return ok;
             }
             0x4002_8000 | 0x4002_c000 => {
                 let which = usize::from(base == 0x4002_c000);
-                let ok = self.clocks.write_pll(which, offset, value);
+                let ok = self.clocks.write_pll(which, offset, value, now);
                 self.clocks_changed();
                 return ok;
             }
@@ -274,7 +274,11 @@ impl Bus {
                 }
                 None => return false,
             },
-            0x4006_0000 => return self.clocks.write_rosc(offset, value),
+            0x4006_0000 => {
+                let ok = self.clocks.write_rosc(offset, value);
+                self.clocks_changed();
+                return ok;
+            }
             0x5000_0000 => return self.dma.write(offset, value, now),
             0x5010_0000 => self.write_dpram(offset as usize, value, 4),
             0x5011_0000 => return self.usb.write(offset, value),

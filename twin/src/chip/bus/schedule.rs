@@ -9,6 +9,7 @@ use crate::chip::cpu::ppb::SYSTICK_PENDING;
 /// Peripherals with deadlines, in the order in which those due at the same cycle act.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Actor {
+    Clocks,
     Timer,
     Uart(usize),
     I2c(usize),
@@ -19,7 +20,8 @@ enum Actor {
     Watchdog,
 }
 
-const ACTORS: [Actor; 12] = [
+const ACTORS: [Actor; 13] = [
+    Actor::Clocks,
     Actor::Timer,
     Actor::Uart(0),
     Actor::Uart(1),
@@ -52,6 +54,7 @@ impl Deadlines {
 impl Bus {
     fn deadline(&self, actor: Actor) -> u64 {
         match actor {
+            Actor::Clocks => self.clocks.next_event(),
             Actor::Timer => self.timer.next_event(),
             Actor::Uart(n) => self.uart[n].next_event(),
             Actor::I2c(n) => self.i2c[n].next_event(),
@@ -66,6 +69,10 @@ impl Bus {
     fn act(&mut self, actor: Actor) {
         let now = self.now;
         match actor {
+            Actor::Clocks => {
+                self.clocks.advance(now);
+                self.clocks_changed();
+            }
             Actor::Timer => self.timer.advance(now),
             Actor::Uart(n) => {
                 let rts_n = self.uart[n].rts_n();
@@ -144,6 +151,7 @@ impl Bus {
         }
         if self.deadlines.known && self.deadlines.earliest <= now {
             for (n, actor) in ACTORS.into_iter().enumerate() {
+                // One that acts may move the others: then all are asked again.
                 if self.deadlines.at[n] <= now {
                     self.act(actor);
                     self.deadlines.at[n] = self.deadline(actor);

@@ -109,7 +109,7 @@ impl Bus {
 
     /// The crystal stops: for good.
     pub fn stop_crystal(&mut self) {
-        self.clocks.stop_crystal();
+        self.clocks.stop_crystal(self.now);
         self.clocks_changed();
     }
 
