@@ -264,3 +264,57 @@ fn a_fault_without_a_handler_stops_the_chip_instead_of_sleeping_for_ever() {
         "{halt}"
     );
 }
+
+#[test]
+fn a_watchdog_that_counts_outlives_the_reset_it_did_not_make() {
+    let mut chip = chip(&FOREVER);
+    chip.bus.write32(PSM_WDSEL, 0x1_fffc);
+    chip.bus.write32(WATCHDOG + 0x04, 20_000);
+    chip.bus.write32(WATCHDOG, 1 << 30);
+    run(&mut chip, 1_000 * 120).expect("it runs");
+    // TRIGGER, with ENABLE kept.
+    chip.bus.write32(WATCHDOG, 1 << 31 | 1 << 30);
+    let halt = run(&mut chip, 10).expect_err("no boot2");
+    assert_eq!(halt.fault, Fault::Boot2);
+    assert_eq!(chip.bus.watchdog.reason, 2);
+    assert_eq!(chip.bus.read32(WATCHDOG + 0x2c) & 0x7ff, 12 | 3 << 9);
+    assert_ne!(chip.bus.read32(WATCHDOG) & 1 << 30, 0, "still enabled");
+    let left = chip.bus.read32(WATCHDOG) & 0x00ff_ffff;
+    assert!((17_900..=18_000).contains(&left), "{left}");
+}
+
+#[test]
+fn the_timer_pauses_and_goes_on() {
+    let mut chip = chip(&FOREVER);
+    let low = TIMER + 0x28;
+    chip.bus.write32(TIMER + 0x30, 1);
+    let stood = chip.bus.read32(low);
+    run(&mut chip, 12_000).expect("it runs");
+    assert_eq!(chip.bus.read32(low), stood);
+    chip.bus.write32(TIMER + 0x30, 0);
+    run(&mut chip, 12_000).expect("it runs");
+    assert_eq!(chip.bus.read32(low), stood + 100);
+    assert_eq!(chip.bus.read32(TIMER + 0x2c), 7, "DBGPAUSE");
+}
+
+#[test]
+fn reading_the_low_word_latches_the_high_one_and_a_set_time_takes_both() {
+    let mut chip = chip(&FOREVER);
+    chip.bus.write32(TIMER + 0x04, 0xffff_fff0);
+    chip.bus.write32(TIMER, 7);
+    assert_eq!(chip.bus.read32(TIMER + 0x0c), 0xffff_fff0);
+    run(&mut chip, 20 * 120).expect("it runs");
+    assert_eq!(chip.bus.read32(TIMER + 0x08), 7, "as latched");
+    assert_eq!(chip.bus.read32(TIMER + 0x24), 8, "as it is");
+    assert_eq!(chip.bus.read32(TIMER + 0x0c), 4);
+    assert_eq!(chip.bus.read32(TIMER + 0x08), 8);
+}
+
+#[test]
+fn an_alarm_interrupt_can_be_forced() {
+    let mut chip = chip(&FOREVER);
+    chip.bus.write32(TIMER + 0x3c, 1 << 2);
+    assert_eq!(chip.bus.read32(TIMER + 0x34), 0, "INTR");
+    assert_eq!(chip.bus.read32(TIMER + 0x40), 1 << 2, "INTS");
+    assert_eq!(chip.bus.timer.irq_lines(), 1 << 2);
+}

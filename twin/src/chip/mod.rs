@@ -32,6 +32,7 @@ mod timer;
 pub mod uart;
 mod usb;
 pub mod usb_host;
+mod watchdog;
 
 use bus::{Bus, Cause, Fault, Reader, ResetCause, Shadow, Uninitialised};
 use cpu::{Cpu, Sleep, StackWatch};

@@ -1,21 +1,25 @@
-//! The 64-bit microsecond timer with its four alarms, and the watchdog that makes its tick.
+//! The 64-bit microsecond timer with its four alarms.
 //!
-//! Source: RP2040 datasheet 4.6 (timer), 4.7 (watchdog); erratum RP2040-E1: the watchdog counts down twice a tick.
+//! Source: RP2040 datasheet 4.6; its tick is the watchdog's (4.7.2).
 //!
-//! | TIMER | register | | WATCHDOG | register |
-//! |---|---|---|---|---|
-//! | 00 04 | TIMEHW TIMELW | | 00 | CTRL: time 23:0, enable 30, trigger 31 |
-//! | 08 0c | TIMEHR TIMELR | | 04 | LOAD |
-//! | 10-1c | ALARM0-3 | | 08 | REASON: timer 0, force 1 |
-//! | 20 | ARMED | | 0c-28 | SCRATCH0-7, survive a reset |
-//! | 24 28 | TIMERAWH TIMERAWL | | 2c | TICK: cycles 8:0, enable 9, running 10 |
-//! | 30 | PAUSE | | | |
-//! | 34-40 | INTR INTE INTF INTS | | | |
+//! | offset | register |
+//! |---|---|
+//! | 00 04 | TIMEHW TIMELW: the low word waits for the high one |
+//! | 08 0c | TIMEHR TIMELR: reading the low word latches the high one |
+//! | 10-1c | ALARM0-3: writing arms |
+//! | 20 | ARMED: writing ones disarms |
+//! | 24 28 | TIMERAWH TIMERAWL |
+//! | 2c | DBGPAUSE: nobody debugs here, stored |
+//! | 30 | PAUSE 0 |
+//! | 34-40 | INTR INTE INTF INTS |
+//!
+//! An alarm matches the low word alone, when a tick makes it equal: one set into the past waits for 2^32 µs. (One set to the present count
+//! is due at once.)
 //!
 //! A tick takes a whole number of system cycles; the bus tells how many when the clocks change.
 
 /// Microsecond timer.
-#[derive(Default)]
+#[derive(Clone)]
 pub struct Timer {
     /// Ticks at cycle `since`.
     ticks: u64,
@@ -26,14 +30,40 @@ pub struct Timer {
     write_low: u32,
     alarm: [u32; 4],
     armed: u32,
+    paused: bool,
+    dbgpause: u32,
     intr: u32,
     inte: u32,
     intf: u32,
 }
 
+impl Default for Timer {
+    fn default() -> Self {
+        Self {
+            ticks: 0,
+            since: 0,
+            cycles_per_tick: 0,
+            latched_high: 0,
+            write_low: 0,
+            alarm: [0; 4],
+            armed: 0,
+            paused: false,
+            dbgpause: 0b111,
+            intr: 0,
+            inte: 0,
+            intf: 0,
+        }
+    }
+}
+
 impl Timer {
+    /// Cycles a count takes; 0 while it stands.
+    fn step(&self) -> u64 {
+        if self.paused { 0 } else { self.cycles_per_tick }
+    }
+
     fn count(&self, now: u64) -> u64 {
-        match self.cycles_per_tick {
+        match self.step() {
             0 => self.ticks,
             c => self.ticks + (now - self.since) / c,
         }
@@ -60,7 +90,7 @@ impl Timer {
 
     /// Cycle at which the next armed alarm fires.
     pub fn next_event(&self) -> u64 {
-        if self.armed == 0 || self.cycles_per_tick == 0 {
+        if self.armed == 0 || self.step() == 0 {
             return u64::MAX;
         }
         let base = self.ticks;
@@ -94,7 +124,7 @@ impl Timer {
     }
 
     fn rebase(&mut self, count: u64) {
-        if self.cycles_per_tick != 0 {
+        if self.step() != 0 {
             self.since += (count - self.ticks) * self.cycles_per_tick;
             self.ticks = count;
         }
@@ -118,7 +148,8 @@ impl Timer {
             0x20 => self.armed,
             0x24 => (count >> 32) as u32,
             0x28 => count as u32,
-            0x2c | 0x30 => 0,
+            0x2c => self.dbgpause,
+            0x30 => u32::from(self.paused),
             0x34 => self.intr,
             0x38 => self.inte,
             0x3c => self.intf,
@@ -144,115 +175,17 @@ impl Timer {
                 self.armed |= 1 << n;
             }
             0x20 => self.armed &= !value,
-            0x2c => {}
+            0x2c => self.dbgpause = value & 0b111,
+            0x30 => {
+                self.ticks = self.count(now);
+                self.since = now;
+                self.paused = value & 1 != 0;
+            }
             0x34 => self.intr &= !value,
             0x38 => self.inte = value & 0xf,
             0x3c => self.intf = value & 0xf,
             _ => return false,
         }
         true
-    }
-}
-
-/// Bits of CTRL that software can write without firing.
-const WATCHDOG_CTRL: u32 = 0x4700_0000;
-const ENABLE: u32 = 1 << 30;
-const TRIGGER: u32 = 1 << 31;
-
-/// Watchdog, its scratch words and the tick generator.
-#[derive(Default)]
-pub struct Watchdog {
-    ctrl: u32,
-    /// Half-ticks left (erratum E1: two a tick) at cycle `since`.
-    left: u64,
-    since: u64,
-    cycles_per_tick: u64,
-    pub reason: u32,
-    pub scratch: [u32; 8],
-    tick: u32,
-}
-
-impl Watchdog {
-    /// What a reset leaves: scratch words and the reason, which the caller sets.
-    pub fn reset(&mut self, now: u64) {
-        *self = Self {
-            scratch: self.scratch,
-            reason: self.reason,
-            since: now,
-            ..Self::default()
-        };
-    }
-
-    /// Reference-clock cycles of a tick, if the tick runs.
-    pub fn tick_divider(&self) -> Option<u32> {
-        (self.tick & (1 << 9) != 0).then_some((self.tick & 0x1ff).max(1))
-    }
-
-    /// The tick changes its length at cycle `now`.
-    pub fn set_tick(&mut self, cycles_per_tick: u64, now: u64) {
-        if cycles_per_tick != self.cycles_per_tick {
-            self.left = self.remaining(now);
-            self.since = now;
-            self.cycles_per_tick = cycles_per_tick;
-        }
-    }
-
-    fn remaining(&self, now: u64) -> u64 {
-        if self.ctrl & ENABLE == 0 || self.cycles_per_tick == 0 {
-            return self.left;
-        }
-        self.left
-            .saturating_sub(2 * ((now - self.since) / self.cycles_per_tick))
-    }
-
-    /// Cycle at which the watchdog bites.
-    pub fn next_event(&self) -> u64 {
-        if self.ctrl & ENABLE == 0 || self.cycles_per_tick == 0 {
-            return u64::MAX;
-        }
-        self.since + self.left.div_ceil(2) * self.cycles_per_tick
-    }
-
-    /// Whether it bites at cycle `now`.
-    pub fn bites(&mut self, now: u64) -> bool {
-        let bite = self.next_event() <= now;
-        if bite {
-            self.reason = 1;
-        }
-        bite
-    }
-
-    /// Reads a register at cycle `now`.
-    pub fn read(&self, offset: u32, now: u64) -> Option<u32> {
-        Some(match offset {
-            0x00 => self.ctrl | self.remaining(now) as u32 & 0x00ff_ffff,
-            0x08 => self.reason,
-            0x0c..=0x28 => self.scratch[((offset - 0x0c) / 4) as usize],
-            0x2c => self.tick | (self.tick >> 9 & 1) << 10,
-            _ => return None,
-        })
-    }
-
-    /// Writes a register at cycle `now`. `Some(true)` asks for a reset.
-    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Option<bool> {
-        match offset {
-            0x00 => {
-                self.left = self.remaining(now);
-                self.since = now;
-                self.ctrl = value & WATCHDOG_CTRL;
-                if value & TRIGGER != 0 {
-                    self.reason = 2;
-                    return Some(true);
-                }
-            }
-            0x04 => {
-                self.left = u64::from(value & 0x00ff_ffff);
-                self.since = now;
-            }
-            0x0c..=0x28 => self.scratch[((offset - 0x0c) / 4) as usize] = value,
-            0x2c => self.tick = value & 0x3ff,
-            _ => return None,
-        }
-        Some(false)
     }
 }

@@ -39,6 +39,8 @@ pub enum Fault {
     PartialReset(u32),
     #[error("ADC input {0} was converted, but nothing is connected to it")]
     OpenInput(usize),
+    #[error("core {core} read a result of its divider before it was ready (8 cycles)")]
+    DividerBusy { core: usize },
     #[error("the system clock stopped (clk_sys has no running source)")]
     ClockStopped,
 }

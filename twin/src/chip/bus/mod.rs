@@ -48,10 +48,11 @@ use super::spi::Spi;
 use super::syscfg::Syscfg;
 use super::systick::SysTick;
 use super::time::Instant;
-use super::timer::{Timer, Watchdog};
+use super::timer::Timer;
 use super::uart::Uart;
 use super::usb::{DPRAM, Usb};
 use super::usb_host::UsbHost;
+use super::watchdog::Watchdog;
 
 /// SRAM: four striped 64 KiB banks and two of 4 KiB (datasheet 2.6.2).
 pub const SRAM: usize = 264 * 1024;
@@ -248,7 +249,6 @@ impl Bus {
         self.fabric.priority = 0;
         self.clocks.reset(oscillators);
         self.sio = Sio::default();
-        self.watchdog.reset(self.now);
         match cause {
             ResetCause::PowerOn => {
                 self.watchdog = Watchdog::default();

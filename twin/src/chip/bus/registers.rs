@@ -1,6 +1,6 @@
 //! The registers by address: one line a block, to the file that models it.
 
-use super::{Bus, DPRAM, ResetCause, reset};
+use super::{Bus, DPRAM, Fault, ResetCause, reset};
 use crate::chip::dma::Dma;
 use crate::chip::pio::Pio;
 use crate::chip::sio::Effect;
@@ -77,7 +77,11 @@ impl Bus {
                     self.look_at_pins();
                 }
                 let pins = self.pins.synced(now, self.syscfg.in_sync_bypass);
-                self.sio.read(self.active, offset, pins)
+                let value = self.sio.read(self.active, offset, pins, now);
+                if let Some(core) = self.sio.too_early.take() {
+                    self.fault.get_or_insert(Fault::DividerBusy { core });
+                }
+                value
             }
             0xe => self.read_ppb(address),
             _ => match base {
@@ -158,7 +162,7 @@ impl Bus {
         match address >> 28 {
             0x1 => return self.write_flash_interface(address, value),
             0xd => {
-                return match self.sio.write(self.active, offset, value) {
+                return match self.sio.write(self.active, offset, value, now) {
                     Some(Effect::Pins) => {
                         self.resolve_pins();
                         true

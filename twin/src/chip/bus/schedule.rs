@@ -105,8 +105,6 @@ impl Bus {
             Actor::Watchdog => {
                 if self.watchdog.bites(now) && self.reset_request.is_none() {
                     self.reset_request = Some(ResetCause::WatchdogTimer);
-                    // Bites once; the reset clears it.
-                    let _ = self.watchdog.write(0, 0, now);
                 }
             }
         }

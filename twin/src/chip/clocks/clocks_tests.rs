@@ -1,6 +1,6 @@
 //! Start-up times, lock, the frequency counter and resus, worked out from the datasheet's formulas.
 
-use super::XOSC_HZ;
+use super::oscillators::XOSC_HZ;
 use crate::chip::Chip;
 use crate::chip::bus::Fault;
 use crate::chip::flash::Flash;

@@ -20,7 +20,6 @@ mod oscillators;
 mod pll;
 
 use counter::Counter;
-pub use oscillators::XOSC_HZ;
 use oscillators::{Rosc, Xosc};
 use pll::Pll;
 

@@ -25,6 +25,10 @@ const BAD_WRITE: u32 = 1 << 24;
 const DIV_RUNNING: u32 = 1 << 16;
 const ENABLED: u32 = 1 << 12;
 
+fn flag(on: bool, bits: u32) -> u32 {
+    if on { bits } else { 0 }
+}
+
 /// Crystal oscillator.
 #[derive(Clone, Copy)]
 pub(super) struct Xosc {
@@ -77,7 +81,8 @@ impl Xosc {
     }
 
     fn start(&mut self, sys_hz: u64, now: u64) {
-        let periods = 256 * u64::from(self.startup & 0x3fff) << (2 * (self.startup >> 20 & 1));
+        let times = if self.startup & 1 << 20 != 0 { 4 } else { 1 };
+        let periods = 256 * times * u64::from(self.startup & 0x3fff);
         self.stable_at = if self.enabled() && !self.dead {
             now + (periods * sys_hz).div_ceil(XOSC_HZ)
         } else {
@@ -89,9 +94,9 @@ impl Xosc {
         Some(match offset {
             0x00 => self.ctrl,
             0x04 => {
-                u32::from(self.enabled()) * ENABLED
-                    | u32::from(self.bad_write) * BAD_WRITE
-                    | u32::from(self.stable) * STABLE
+                flag(self.enabled(), ENABLED)
+                    | flag(self.bad_write, BAD_WRITE)
+                    | flag(self.stable, STABLE)
             }
             0x0c => self.startup,
             _ => return None,
@@ -155,8 +160,8 @@ impl Rosc {
             0x10 => 0xaa0,
             0x14 => 0x8,
             0x18 => {
-                u32::from(self.enabled()) * (STABLE | ENABLED | DIV_RUNNING)
-                    | u32::from(self.bad_write) * BAD_WRITE
+                flag(self.enabled(), STABLE | ENABLED | DIV_RUNNING)
+                    | flag(self.bad_write, BAD_WRITE)
             }
             0x1c => {
                 // Xorshift (Marsaglia 2003).

@@ -1,4 +1,4 @@
-//! Single-cycle IO: GPIO, inter-core FIFOs, spinlocks, dividers.
+//! Single-cycle IO: GPIO, inter-core FIFOs, spinlocks, dividers, interpolators.
 //!
 //! Source: RP2040 datasheet 2.3.1.
 //!
@@ -10,44 +10,17 @@
 //! | 50 54 58 | FIFO_ST FIFO_WR FIFO_RD |
 //! | 5c 100-17c | SPINLOCK_ST, SPINLOCK0-31 |
 //! | 60-78 | DIV_UDIVIDEND UDIVISOR SDIVIDEND SDIVISOR QUOTIENT REMAINDER CSR |
-//!
-//! Not modelled, an error when touched: interpolators. A division is ready at once (the chip takes 8 cycles, which its users wait for).
+//! | 80-bc c0-fc | INTERP0 INTERP1 |
 
+mod divider;
+mod interpolator;
+
+use divider::Divider;
+use interpolator::Interpolator;
 use std::collections::VecDeque;
 
 /// Words a FIFO holds (datasheet 2.3.1.4).
 const FIFO: usize = 8;
-
-#[derive(Default, Clone, Copy)]
-struct Divider {
-    dividend: u32,
-    divisor: u32,
-    quotient: u32,
-    remainder: u32,
-    signed: bool,
-    dirty: bool,
-}
-
-impl Divider {
-    fn divide(&mut self) {
-        self.dirty = true;
-        let (n, d) = (self.dividend, self.divisor);
-        // Results of a division by zero are the chip's (datasheet 2.3.1.5).
-        (self.quotient, self.remainder) = if self.signed {
-            let (n, d) = (n as i32, d as i32);
-            if d == 0 {
-                (if n < 0 { 1 } else { u32::MAX }, n as u32)
-            } else {
-                (n.wrapping_div(d) as u32, n.wrapping_rem(d) as u32)
-            }
-        } else {
-            match (n.checked_div(d), n.checked_rem(d)) {
-                (Some(q), Some(r)) => (q, r),
-                _ => (u32::MAX, n),
-            }
-        };
-    }
-}
 
 /// What a write asks of the chip around it.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -60,7 +33,7 @@ pub enum Effect {
 }
 
 /// The block, shared by both cores.
-#[derive(Default)]
+#[derive(Clone)]
 pub struct Sio {
     pub out: u32,
     pub oe: u32,
@@ -71,6 +44,26 @@ pub struct Sio {
     underflow: [bool; 2],
     locks: u32,
     dividers: [Divider; 2],
+    interpolators: [[Interpolator; 2]; 2],
+    /// A core read a result that was not there yet.
+    pub too_early: Option<usize>,
+}
+
+impl Default for Sio {
+    fn default() -> Self {
+        Self {
+            out: 0,
+            oe: 0,
+            high: [0; 2],
+            fifo: Default::default(),
+            overflow: [false; 2],
+            underflow: [false; 2],
+            locks: 0,
+            dividers: [Divider::default(); 2],
+            interpolators: [[Interpolator::new(0), Interpolator::new(1)]; 2],
+            too_early: None,
+        }
+    }
 }
 
 impl Sio {
@@ -79,9 +72,8 @@ impl Sio {
         !self.fifo[core].is_empty() || self.overflow[core] || self.underflow[core]
     }
 
-    /// Reads a register as `core`; `pins` are the synchronised input levels.
-    pub fn read(&mut self, core: usize, offset: u32, pins: u32) -> Option<u32> {
-        let d = &mut self.dividers[core];
+    /// Reads a register as `core` at cycle `now`; `pins` are the synchronised input levels.
+    pub fn read(&mut self, core: usize, offset: u32, pins: u32, now: u64) -> Option<u32> {
         Some(match offset {
             0x00 => core as u32,
             0x04 => pins,
@@ -104,14 +96,17 @@ impl Sio {
                 }
             },
             0x5c => self.locks,
-            0x60 | 0x68 => d.dividend,
-            0x64 | 0x6c => d.divisor,
-            0x70 => {
-                d.dirty = false;
-                d.quotient
+            0x60..=0x78 => match self.dividers[core].read(offset - 0x60, now) {
+                Ok(value) => value,
+                Err(()) => {
+                    self.too_early = Some(core);
+                    0
+                }
+            },
+            0x80..=0xfc => {
+                let which = usize::from(offset >= 0xc0);
+                self.interpolators[core][which].read(offset & 0x3f)
             }
-            0x74 => d.remainder,
-            0x78 => 1 | u32::from(d.dirty) << 1,
             0x100..=0x17c => {
                 let bit = 1 << ((offset - 0x100) / 4);
                 if self.locks & bit != 0 {
@@ -125,8 +120,8 @@ impl Sio {
         })
     }
 
-    /// Writes a register as `core`.
-    pub fn write(&mut self, core: usize, offset: u32, value: u32) -> Option<Effect> {
+    /// Writes a register as `core` at cycle `now`.
+    pub fn write(&mut self, core: usize, offset: u32, value: u32, now: u64) -> Option<Effect> {
         fn store(word: &mut u32, how: u32, value: u32) {
             match how {
                 0 => *word = value,
@@ -136,7 +131,6 @@ impl Sio {
             }
         }
         let how = (offset / 4) & 3;
-        let d = &mut self.dividers[core];
         match offset {
             0x10..=0x1c => store(&mut self.out, how, value),
             0x20..=0x2c => store(&mut self.oe, how, value),
@@ -154,23 +148,10 @@ impl Sio {
                 }
                 return Some(Effect::Pushed);
             }
-            0x60 | 0x68 => {
-                d.dividend = value;
-                d.signed = offset == 0x68;
-                d.divide();
-            }
-            0x64 | 0x6c => {
-                d.divisor = value;
-                d.signed = offset == 0x6c;
-                d.divide();
-            }
-            0x70 => {
-                d.quotient = value;
-                d.dirty = true;
-            }
-            0x74 => {
-                d.remainder = value;
-                d.dirty = true;
+            0x60..=0x78 => self.dividers[core].write(offset - 0x60, value, now),
+            0x80..=0xfc => {
+                let which = usize::from(offset >= 0xc0);
+                self.interpolators[core][which].write(offset & 0x3f, value);
             }
             0x100..=0x17c => self.locks &= !(1 << ((offset - 0x100) / 4)),
             _ => return None,
@@ -182,3 +163,7 @@ impl Sio {
         })
     }
 }
+
+#[cfg(test)]
+#[path = "sio_tests.rs"]
+mod tests;
