@@ -28,7 +28,7 @@ pub fn prepare(chip: &mut Chip, code: &[u16]) {
     assert_eq!(chip.bus.fault.take(), Some(Fault::Boot2));
     chip.bus.write32(XOSC_CTRL, 0x00fa_baa0);
     chip.bus.write32(RESETS, 0);
-    wait_for(&mut chip, XOSC_CTRL + 4);
+    wait_for(chip, XOSC_CTRL + 4);
     for (register, value) in [
         // 12 MHz × 100 / 5 / 2.
         (PLL_SYS, 1),
@@ -38,7 +38,7 @@ pub fn prepare(chip: &mut Chip, code: &[u16]) {
     ] {
         chip.bus.write32(register, value);
     }
-    wait_for(&mut chip, PLL_SYS);
+    wait_for(chip, PLL_SYS);
     for (register, value) in [
         (CLK_REF_CTRL, 2),
         (CLK_SYS_CTRL, 1),
