@@ -5,7 +5,7 @@ use super::*;
 use crate::board::gnss::pps::Jitter;
 use crate::board::kind::{ADSBEE_1090_E, ADSBEE_1090U};
 use crate::chip::flash::SECTOR;
-use crate::chip::test_chip::{CODE, DATA, FOREVER, prepare};
+use crate::chip::test_chip::{CODE, DATA, FOREVER, prepare, wait_for};
 use crate::fault::{Fault, When};
 use crate::front_end::detector::millivolt;
 use crate::front_end::{Edge, FrontEnd, Level, Player};
@@ -25,13 +25,14 @@ fn board_of(setup: &Setup) -> Board {
     prepare(&mut board.chip, &FOREVER);
     for (register, value) in [
         (0x4002_c000, 1),
-        (0x4002_c008, 40),
-        (0x4002_c00c, 5 << 16 | 2 << 12),
+        (0x4002_c008, 100),
+        (0x4002_c00c, 5 << 16 | 5 << 12),
         (0x4002_c004, 0),
-        (0x4000_8060, 1 << 11),
     ] {
         board.chip.bus.write32(register, value);
     }
+    wait_for(&mut board.chip, 0x4002_c000);
+    board.chip.bus.write32(0x4000_8060, 1 << 11);
     board
 }
 

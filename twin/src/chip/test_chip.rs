@@ -26,6 +26,8 @@ pub fn chip(code: &[u16]) -> Chip {
 pub fn prepare(chip: &mut Chip, code: &[u16]) {
     // The flash is empty on purpose: no program but the test's.
     assert_eq!(chip.bus.fault.take(), Some(Fault::Boot2));
+    // A start-up delay of 256 periods, so that the tests begin early.
+    chip.bus.write32(XOSC_CTRL + 0xc, 1);
     chip.bus.write32(XOSC_CTRL, 0x00fa_baa0);
     chip.bus.write32(RESETS, 0);
     wait_for(chip, XOSC_CTRL + 4);
