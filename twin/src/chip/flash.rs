@@ -1,16 +1,22 @@
-//! The flash chip: contents, erase and program, and the serial interface as far as boot2 uses it.
+//! The flash chip's contents, erase and program, and the SSI in front of it; `flash_serial` knows the commands.
 //!
-//! Source: W25Q16JV datasheet (commands, timing), RP2040 datasheet 4.10 (SSI). The XIP window reads the contents directly.
+//! Source: W25Q16JV datasheet (timing), RP2040 datasheet 4.10 (SSI). The XIP window reads the contents directly.
 //!
 //! | SSI 1800_0000 | register |
 //! |---|---|
 //! | 00 04 08 10 14 | CTRLR0 CTRLR1 SSIENR SER BAUDR |
 //! | 20 24 28 60 | TXFLR RXFLR SR DR0 |
+//! | 0c 18 1c 2c 48 4c-54 | MWCR TXFTLR RXFTLR IMR ICR DMACR DMATDLR DMARDLR: zero, or an error |
 //! | f0 f4 | RX_SAMPLE_DLY SPI_CTRLR0 |
+//!
+//! A byte written to DR0 is exchanged at once. With chip select left to the SSI, a command ends where the next one begins: once its replies
+//! were taken. A program that holds chip select by IO_QSPI (SS, OUTOVER) says itself where it ends.
 
 use std::collections::VecDeque;
 
 use super::flash_journal::{Journal, Kind};
+use super::flash_serial::{Action, Serial, busy_us};
+use super::qspi::ChipSelect;
 
 /// Sector erase and page program (W25Q16JV: typical 45 ms and 0.4 ms).
 pub const ERASE_SECTOR_US: u64 = 45_000;
@@ -31,7 +37,12 @@ pub struct Flash {
     unique_id: [u8; 8],
     registers: [u32; 0x100 / 4],
     replies: VecDeque<u8>,
-    command: Vec<u8>,
+    serial: Serial,
+    select: ChipSelect,
+    /// Until this cycle an operation begun by a command keeps the chip busy.
+    pub busy_until: u64,
+    /// A command that nothing here knows.
+    pub unknown: Option<u8>,
     /// Erase and program operations so far.
     pub journal: Journal,
 }
@@ -44,7 +55,10 @@ impl Flash {
             unique_id,
             registers: [0; 0x100 / 4],
             replies: VecDeque::new(),
-            command: Vec::new(),
+            serial: Serial::default(),
+            select: ChipSelect::BySsi,
+            busy_until: 0,
+            unknown: None,
             journal: Journal::default(),
         }
     }
@@ -53,7 +67,8 @@ impl Flash {
     pub fn reset(&mut self) {
         self.registers = [0; 0x100 / 4];
         self.replies.clear();
-        self.command.clear();
+        self.serial.select();
+        self.select = ChipSelect::BySsi;
     }
 
     /// Erases whole sectors. False if the range leaves the chip or is not aligned.
@@ -86,18 +101,29 @@ impl Flash {
         true
     }
 
-    /// One byte goes out on the serial interface, one comes back.
-    fn exchange(&mut self, out: u8) -> u8 {
-        self.command.push(out);
-        let n = self.command.len() - 1;
-        match (self.command[0], n) {
-            // Status 1: never busy. Status 2: QE set.
-            (0x05, 1..) => 0x00,
-            (0x35, 1..) => 0x02,
-            // Winbond, Q family, log2 of the size (W25Q16: 15h, W25Q128: 18h).
-            (0x9f, 1..=3) => [0xef, 0x40, self.bytes.len().ilog2() as u8][n - 1],
-            (0x4b, 5..=12) => self.unique_id[n - 5],
-            _ => 0xff,
+    /// Who drives chip select, from now on.
+    pub fn set_chip_select(&mut self, select: ChipSelect, now: u64, sys_hz: u64) {
+        if select != self.select {
+            self.select = select;
+            self.end_command(now, sys_hz);
+            self.serial.select();
+        }
+    }
+
+    /// Chip select rises: a complete command acts.
+    fn end_command(&mut self, now: u64, sys_hz: u64) {
+        match self.serial.deselect(self.bytes.len()) {
+            Err(command) => self.unknown = Some(command),
+            Ok(None) => {}
+            Ok(Some(action)) => {
+                self.busy_until = now + busy_us(&action) * sys_hz / 1_000_000;
+                // Ranges come whole from the command, so neither is refused.
+                let _ = match action {
+                    Action::Erase { len: 0, .. } => true,
+                    Action::Erase { offset, len, .. } => self.erase(offset, len),
+                    Action::Program { offset, data } => self.program(offset, &data),
+                };
+            }
         }
     }
 
@@ -146,29 +172,48 @@ impl Flash {
             0x28 => 0x06 | u32::from(!self.replies.is_empty()) << 3,
             0x60 => u32::from(self.replies.pop_front().unwrap_or(0)),
             0x00 | 0x04 | 0x08 | 0x10 | 0x14 | 0xf0 | 0xf4 => self.registers[offset as usize / 4],
+            // Thresholds, masks, interrupts, DMA: as at reset.
+            0x0c | 0x18 | 0x1c | 0x2c | 0x30 | 0x34 | 0x38..=0x48 | 0x4c..=0x54 => 0,
+            // SSI_VERSION_ID of version 4.01a.
+            0x5c => 0x3430_312a,
+            0x58 => 0x5153_5049,
             _ => return None,
         })
     }
 
-    /// Writes an SSI register.
-    pub fn write_ssi(&mut self, offset: u32, value: u32) -> bool {
+    /// Writes an SSI register at cycle `now`.
+    pub fn write_ssi(&mut self, offset: u32, value: u32, now: u64, sys_hz: u64) -> bool {
         match offset {
             0x08 => {
                 self.registers[2] = value;
                 if value & 1 == 0 {
                     self.replies.clear();
-                    self.command.clear();
+                    if self.select == ChipSelect::BySsi {
+                        self.end_command(now, sys_hz);
+                        self.serial.select();
+                    }
                 }
             }
             0x60 => {
-                // Chip select falls with each drained transfer; a command starts anew once its replies were taken.
-                if self.replies.is_empty() && self.starts_command(value as u8) {
-                    self.command.clear();
+                let begins = self.select == ChipSelect::BySsi
+                    && self.replies.is_empty()
+                    && self.serial.under_way()
+                    && is_command(value as u8);
+                if begins {
+                    self.end_command(now, sys_hz);
+                    self.serial.select();
                 }
-                let reply = self.exchange(value as u8);
+                let busy = now < self.busy_until;
+                let reply = match self.select {
+                    ChipSelect::High => 0xff,
+                    _ => self
+                        .serial
+                        .exchange(value as u8, &self.bytes, &self.unique_id, busy),
+                };
                 self.replies.push_back(reply);
             }
             0x00 | 0x04 | 0x10 | 0x14 | 0xf0 | 0xf4 => self.registers[offset as usize / 4] = value,
+            0x0c | 0x18 | 0x1c | 0x2c | 0x4c..=0x54 => return value == 0,
             _ => return false,
         }
         true
@@ -183,8 +228,13 @@ impl Flash {
     pub fn shows_xip(&self) -> bool {
         self.registers[2] & 1 != 0 && self.registers[0] >> 8 & 3 == 3
     }
-
-    fn starts_command(&self, byte: u8) -> bool {
-        !self.command.is_empty() && matches!(byte, 0x05 | 0x06 | 0x35 | 0x01 | 0x31 | 0xeb)
-    }
 }
+
+/// Bytes that begin a command where the SSI drives chip select, among those that follow one whose replies were taken: boot2's.
+fn is_command(byte: u8) -> bool {
+    matches!(byte, 0x05 | 0x06 | 0x35 | 0x01 | 0x31 | 0xeb)
+}
+
+#[cfg(test)]
+#[path = "flash_tests.rs"]
+mod tests;

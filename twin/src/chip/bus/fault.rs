@@ -41,6 +41,8 @@ pub enum Fault {
     OpenInput(usize),
     #[error("core {core} read a result of its divider before it was ready (8 cycles)")]
     DividerBusy { core: usize },
+    #[error("command {0:#04x} of the flash chip is not modelled")]
+    FlashCommand(u8),
     #[error("the system clock stopped (clk_sys has no running source)")]
     ClockStopped,
 }

@@ -43,6 +43,7 @@ use super::outside::Surroundings;
 use super::pins::Pins;
 use super::pio::Pio;
 use super::pwm::Pwm;
+use super::qspi::Qspi;
 use super::sio::Sio;
 use super::spi::Spi;
 use super::syscfg::Syscfg;
@@ -129,6 +130,7 @@ pub struct Bus {
     pub uart: [Uart; 2],
     pub i2c: [I2c; 2],
     pub spi: [Spi; 2],
+    pub qspi: Qspi,
     pub adc: Adc,
     pub timer: Timer,
     pub systick: [SysTick; 2],
@@ -202,6 +204,7 @@ impl Bus {
             uart: [Uart::default(), Uart::default()],
             i2c: [I2c::new(0), I2c::new(1)],
             spi: [Spi::default(), Spi::default()],
+            qspi: Qspi::default(),
             adc: Adc::default(),
             timer: Timer::default(),
             systick: [SysTick::default(); 2],

@@ -18,6 +18,12 @@ impl Bus {
         if on(reset::IO_BANK0) || on(reset::PADS_BANK0) {
             self.pins.reset();
         }
+        if on(reset::IO_QSPI) {
+            self.qspi.reset_io();
+        }
+        if on(reset::PADS_QSPI) {
+            self.qspi.reset_pads();
+        }
         if on(reset::PIO0) {
             self.pio[0] = Pio::new();
         }
@@ -77,7 +83,11 @@ impl Bus {
                     self.look_at_pins();
                 }
                 let pins = self.pins.synced(now, self.syscfg.in_sync_bypass);
-                let value = self.sio.read(self.active, offset, pins, now);
+                let value = if offset == 0x08 {
+                    Some(self.qspi.levels())
+                } else {
+                    self.sio.read(self.active, offset, pins, now)
+                };
                 if let Some(core) = self.sio.too_early.take() {
                     self.fault.get_or_insert(Fault::DividerBusy { core });
                 }
@@ -110,7 +120,9 @@ impl Bus {
                     self.look_at_pins();
                     self.pins.read_io(offset)
                 }
+                0x4001_8000 => self.qspi.read_io(offset),
                 0x4001_c000 => self.pins.read_pads(offset),
+                0x4002_0000 => self.qspi.read_pads(offset),
                 0x4002_4000 => self.clocks.read_xosc(offset),
                 0x4002_8000 => self.clocks.read_pll(0, offset),
                 0x4002_c000 => self.clocks.read_pll(1, offset),
@@ -216,6 +228,14 @@ impl Bus {
                 self.apply_trigger_level();
                 return ok;
             }
+            0x4001_8000 => {
+                let ok = self.qspi.write_io(offset, value);
+                let (select, sys_hz) = (self.qspi.chip_select(), self.sys_hz);
+                self.flash.set_chip_select(select, now, sys_hz);
+                self.flash_commanded();
+                return ok;
+            }
+            0x4002_0000 => return self.qspi.write_pads(offset, value),
             0x4001_c000 => {
                 let ok = self.pins.write_pads(offset, value);
                 self.resolve_pins();
@@ -315,10 +335,20 @@ impl Bus {
         }
     }
 
+    /// A command to the flash may have ended: it keeps XIP closed while it runs, and what caches hold of the cells is old.
+    fn flash_commanded(&mut self) {
+        self.xip.busy_until = self.xip.busy_until.max(self.flash.busy_until);
+        if let Some(command) = self.flash.unknown.take() {
+            self.fault.get_or_insert(Fault::FlashCommand(command));
+        }
+    }
+
     pub(super) fn write_flash_interface(&mut self, address: u32, value: u32) -> bool {
         match address >> 24 {
             0x18 => {
-                let ok = self.flash.write_ssi(address & 0xff, value);
+                let (now, sys_hz) = (self.now, self.sys_hz);
+                let ok = self.flash.write_ssi(address & 0xff, value, now, sys_hz);
+                self.flash_commanded();
                 // boot2, run again after an erase or a program, sets the SSI up for XIP and switches it on.
                 if self.flash.shows_xip() {
                     self.xip.command_mode = false;
