@@ -38,13 +38,13 @@ fn it_names_itself() {
     let mut chip = flash();
     assert_eq!(
         command(&mut chip, &[0x9f, 0, 0, 0])[1..],
-        [0xef, 0x40, 0x15]
+        [0xef, 0x40, 0x14]
     );
     let id = command(&mut chip, &[0x4b, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
     assert_eq!(id[5..], [0; 8], "the test chip's");
     assert_eq!(
         command(&mut chip, &[0x90, 0, 0, 0, 0, 0])[4..],
-        [0xef, 0x14]
+        [0xef, 0x13]
     );
 }
 
