@@ -9,22 +9,23 @@
 //! | rs1090 | `Message::try_from`, without its guessing of Comm-B registers |
 //! | adsb_deku | `Frame::from_bytes`; it checks no parity |
 //!
-//! `--cycles`: the cycles alone.
+//! `--cycles`: the cycles alone; `--functions`: also by function.
 //!
 //! Rows take turns, [`ROUNDS`] times; the median counts. Cycles: the image hears a log with its ports silent; everything that core 0 spends in
 //! `mode_s`, `tracker`, the receiver's loop over frames and the compiler's memory and division functions, by frames decoded. The ends of seconds are in it.
 
 #[path = "../tests/golden/logs.rs"]
+#[allow(dead_code, reason = "the golden tests name the logs in their reports")]
 mod logs;
 
 use logs::Log;
 use mode_s::{Bds, Frame, Known, Message, infer};
-use object::{Object, ObjectSymbol, SymbolKind};
 use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Instant;
 use tests::Bench;
+use tests::profile::Functions;
 use tracker::{Aircraft, Heard, Tracker};
 use twin::board::Board;
 use twin::front_end::{FrontEnd, Player};
@@ -32,6 +33,8 @@ use twin::source::{Air, AirOptions, MessageLog};
 
 /// Turns of each row.
 const ROUNDS: usize = 9;
+/// Functions listed with `--functions`.
+const LISTED: usize = 40;
 /// Seconds of air that the image hears.
 const AIR_S: u64 = 4;
 /// Time between the messages of the log without times, in picoseconds: 500 a second.
@@ -203,7 +206,10 @@ fn rates(bench: &mut Bench, frames: &[Sample]) -> BTreeMap<&'static str, f64> {
 fn cycles(bench: &mut Bench) -> Result<f64, String> {
     let says = |what: &str, error: &dyn std::fmt::Display| format!("{what}: {error}");
     let mut board = Board::power_on(&tests::image()).map_err(|e| says("power on", &e))?;
-    board.wait_for_console().map_err(|e| says("console", &e))?;
+    board
+        .wait_for_capture()
+        .and_then(|()| board.wait_for_console())
+        .map_err(|e| says("start", &e))?;
     for port in ["CONSOLE", "COMMS_UART"] {
         board.console_write(format!("AT+PROTOCOL={port},NONE\r\n").as_bytes());
         board.run_ms(20).map_err(|e| says("run", &e))?;
@@ -223,18 +229,14 @@ fn cycles(bench: &mut Bench) -> Result<f64, String> {
         .map_err(|e| says("capture", &e))?;
     board.chip.start_profile();
     board.run_ms(AIR_S * 1000).map_err(|e| says("run", &e))?;
-    let functions = functions()?;
     let profile = board.chip.profile().ok_or("no profile")?;
+    let rows = Functions::of_app(&tests::image()).rows(&profile[0]);
     let mut spent: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
-    for (address, one) in profile[0].addresses() {
-        let name = functions
-            .range(..=address)
-            .next_back()
-            .map_or("", |(_, name)| name.as_str());
-        if let Some(group) = group(name) {
+    for row in &rows {
+        if let Some(group) = group(&row.name) {
             let sum = spent.entry(group).or_default();
-            sum.0 += one.cycles;
-            sum.1 += one.waits;
+            sum.0 += row.spent.cycles;
+            sum.1 += row.spent.waits;
         }
     }
     let frames = decoded(&mut board)? - before;
@@ -256,6 +258,12 @@ fn cycles(bench: &mut Bench) -> Result<f64, String> {
         total += a_frame(*cycles);
     }
     bench.line(&format!("  {:<22} {total:>8.0}", "together"));
+    if std::env::args().any(|argument| argument == "--functions") {
+        for row in rows.iter().take(LISTED) {
+            let a_frame = a_frame(row.spent.cycles);
+            println!("  {a_frame:>8.0} {:>8} calls {}", row.calls, row.name);
+        }
+    }
     Ok(total)
 }
 
@@ -274,30 +282,15 @@ fn decoded(board: &mut Board) -> Result<u32, String> {
 
 /// Which part of the way of a frame a function of the image belongs to.
 fn group(name: &str) -> Option<&'static str> {
-    if name.contains("6mode_s") {
+    if name.contains("mode_s::") {
         Some("mode_s")
-    } else if name.contains("7tracker") {
+    } else if name.contains("tracker::") {
         Some("tracker")
-    } else if name.contains("8Receiver6frames") {
+    } else if name.contains("Receiver::frames") {
         Some("loop over frames")
-    } else if name.contains("compiler_builtins") || name.starts_with("__aeabi") {
+    } else if name.contains("compiler_builtins") || name.starts_with("__") {
         Some("compiler's functions")
     } else {
         None
     }
-}
-
-/// The app's functions by address.
-fn functions() -> Result<BTreeMap<u32, String>, String> {
-    let path = tests::image().with_file_name("app.elf");
-    let bytes = std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let elf = object::File::parse(bytes.as_slice()).map_err(|error| error.to_string())?;
-    Ok(elf
-        .symbols()
-        .filter(|symbol| symbol.kind() == SymbolKind::Text)
-        .map(|symbol| {
-            let address = symbol.address() as u32 & !1;
-            (address, symbol.name().unwrap_or_default().to_owned())
-        })
-        .collect())
 }
