@@ -32,7 +32,7 @@ use twin::front_end::{FrontEnd, Player};
 use twin::source::{Air, AirOptions, MessageLog};
 
 /// Turns of each row.
-const ROUNDS: usize = 9;
+const ROUNDS: usize = 5;
 /// Functions listed with `--functions`.
 const LISTED: usize = 40;
 /// Seconds of air that the image hears.
