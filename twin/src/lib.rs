@@ -12,6 +12,7 @@ pub mod chip;
 pub mod completed;
 pub mod fault;
 pub mod front_end;
+pub mod gdb;
 pub mod image;
 pub mod native;
 pub mod source;

@@ -44,7 +44,7 @@ impl Board {
     pub(super) fn run_to(&mut self, until: u64) -> Result<(), Error> {
         loop {
             self.carry_out_due()?;
-            if self.chip.now() >= until {
+            if self.chip.now() >= until || self.chip.debug_hit().is_some() {
                 return Ok(());
             }
             let stop = self.next_moment().unwrap_or(until).min(until);

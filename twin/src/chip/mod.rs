@@ -31,13 +31,15 @@ mod syscfg;
 mod systick;
 mod time;
 mod timer;
+pub mod trace;
 pub mod uart;
 mod usb;
 pub mod usb_host;
 mod watchdog;
 
+use bus::debug::Hit;
 use bus::{Bus, Cause, Fault, Reader, ResetCause, Shadow, Uninitialised};
-use cpu::{Cpu, Sleep, StackWatch};
+use cpu::{Cpu, Registers, Sleep, StackWatch};
 use flash::Flash;
 pub use profile::{Profile, Spent};
 
@@ -196,6 +198,16 @@ impl Chip {
         [self.cores[0].cpu.waits, self.cores[1].cpu.waits]
     }
 
+    /// A core's registers.
+    pub fn registers(&self, core: usize) -> &Registers {
+        &self.cores[core].cpu.regs
+    }
+
+    /// A core's registers, to be changed from outside; a new PC must be a halfword's address.
+    pub fn registers_mut(&mut self, core: usize) -> &mut Registers {
+        &mut self.cores[core].cpu.regs
+    }
+
     /// Where a core is.
     pub fn program_counter(&self, core: usize) -> u32 {
         self.cores[core].cpu.regs.pc()
@@ -224,12 +236,17 @@ impl Chip {
         self.cores[0].cpu.start(BOOT2_AT, BOOT2_AT);
     }
 
-    /// Runs until cycle `until`, the first fault, or the flash operation that the journal is to pause at.
+    /// Runs until cycle `until`, the first fault, the flash operation that the journal is to pause at, or what a debugger waits for
+    /// ([`Chip::debug_hit`]).
     pub fn run_until(&mut self, until: u64) -> Result<(), Halt> {
         // Between runs anything may have been done to the peripherals.
         self.bus.settle();
         self.bus.paused = false;
-        while self.bus.now < until && self.bus.fault.is_none() && !self.bus.paused {
+        while self.bus.now < until
+            && self.bus.fault.is_none()
+            && !self.bus.paused
+            && self.debug_hit().is_none()
+        {
             self.slice(until);
         }
         match self.bus.fault.clone() {
@@ -244,6 +261,11 @@ impl Chip {
                 })
             }
         }
+    }
+
+    /// What a debugger waited for has happened.
+    pub fn debug_hit(&self) -> Option<Hit> {
+        self.bus.debug.as_ref().and_then(|debug| debug.hit)
     }
 
     fn slice(&mut self, until: u64) {
@@ -341,12 +363,13 @@ impl Chip {
             || self.bus.core1_launching
             || self.bus.paused
             || self.bus.fault.is_some()
+            || self.debug_hit().is_some()
     }
 
     /// Instructions until cycle `end`, a sleep, or an access that wants attention.
     fn step(&mut self, k: usize, end: u64) {
         let cpu = &mut self.cores[k].cpu;
-        if self.bus.shadow.is_some() {
+        if self.bus.shadow.is_some() || self.bus.debug.is_some() {
             cpu.run::<true>(&mut self.bus, end);
         } else {
             cpu.run::<false>(&mut self.bus, end);

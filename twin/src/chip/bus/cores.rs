@@ -199,6 +199,20 @@ impl Bus {
         }
     }
 
+    // ---- for a debugger: without any effect on the chip ---------------------------------------------------------------------
+
+    /// A byte of memory; `None` where a peripheral or nothing is.
+    pub fn look(&self, address: u32) -> Option<u8> {
+        self.memory(address, 1).map(|bytes| bytes[0])
+    }
+
+    /// Changes a byte of SRAM; `None` where there is none.
+    pub fn poke(&mut self, address: u32, value: u8) -> Option<()> {
+        let at = self.sram_offset(address, 1)?;
+        self.write_sram(at, u32::from(value), 1);
+        Some(())
+    }
+
     // ---- for tests, benches and the ROM's functions: no cycles, no refusal ----------------------------------------------------
 
     /// Reads a byte of memory or of a peripheral.

@@ -12,6 +12,7 @@
 
 mod blocks;
 mod cores;
+pub mod debug;
 mod fabric;
 mod fault;
 mod lines;
@@ -50,6 +51,7 @@ use super::syscfg::Syscfg;
 use super::systick::SysTick;
 use super::time::Instant;
 use super::timer::Timer;
+use super::trace::Trace;
 use super::uart::Uart;
 use super::usb::{DPRAM, Usb};
 use super::usb_host::UsbHost;
@@ -86,6 +88,10 @@ pub struct Bus {
     pub xip: Xip,
     /// Which bytes of SRAM were written, while that is watched.
     pub shadow: Option<Box<Shadow>>,
+    /// What a debugger wants, while one is attached.
+    pub debug: Option<Box<debug::Debug>>,
+    /// Signals that are being recorded.
+    pub trace: Option<Box<Trace>>,
     /// Peripherals have been advanced to this cycle.
     pub now: u64,
     /// Time of the core that is executing, and which one it is.
@@ -173,6 +179,8 @@ impl Bus {
             fabric: Fabric::default(),
             xip: Xip::default(),
             shadow: None,
+            debug: None,
+            trace: None,
             now: 0,
             core_time: 0,
             active: 0,
@@ -353,7 +361,7 @@ impl Bus {
             return;
         }
         self.pins.now = to;
-        if to < self.quiet_until {
+        if to < self.quiet_until && self.trace.is_none() {
             self.now = to;
             return;
         }
@@ -363,6 +371,9 @@ impl Bus {
         loop {
             let event = self.next_event();
             let mut limit = event.min(to);
+            if self.trace.is_some() {
+                limit = limit.min(self.now + 1);
+            }
             // PIO runs to its first visible effect before the next event of anything else.
             let (a, b) = (self.pio[0].next_tick(), self.pio[1].next_tick());
             let mut visible = false;
@@ -378,6 +389,10 @@ impl Bus {
                 }
             }
             self.now = self.now.max(limit);
+            if self.trace.is_some() {
+                self.pins.synced(self.now, 0);
+                self.sample_trace();
+            }
             if visible || event <= self.now {
                 self.fire();
                 if stop_on_wake && self.wake_at != [None; 2] {

@@ -71,6 +71,7 @@ impl Cpu {
         }
         if WATCH {
             bus.watch_read(self.id, self.at, at, SIZE as usize);
+            bus.debug_access(self.id, at, SIZE as usize, false);
         }
         let wait = bus.fabric.claim(self.id, sram_port(at), self.time);
         self.time += 1 + wait;
@@ -118,6 +119,7 @@ impl Cpu {
         }
         if WATCH {
             bus.watch_write(at, SIZE as usize);
+            bus.debug_access(self.id, at, SIZE as usize, true);
         }
         let wait = bus.fabric.claim(self.id, sram_port(at), self.time);
         self.time += 1 + wait;

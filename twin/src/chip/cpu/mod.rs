@@ -88,11 +88,14 @@ impl Cpu {
 
     /// Executes instructions until cycle `end`, or until one wants attention.
     ///
-    /// `WATCH` adds what costs speed: reads of memory nobody has written.
+    /// `WATCH` adds what costs speed: reads of memory nobody has written, breakpoints.
     pub fn run<const WATCH: bool>(&mut self, bus: &mut Bus, end: u64) {
         let table = opcode::table();
         while self.time < end {
             self.at = self.regs.pc();
+            if WATCH && self.stops_before(bus) {
+                break;
+            }
             let half = self.fetch(bus, self.at);
             if bus.attention {
                 // The fetch failed, or the program called into ROM.
@@ -101,11 +104,21 @@ impl Cpu {
             self.regs.set_pc(self.at.wrapping_add(2));
             let op = table[usize::from(half)];
             self.execute::<WATCH>(bus, op, half);
-            if bus.attention {
+            if WATCH && self.stops_behind(bus) || bus.attention {
                 break;
             }
         }
         bus.active_pc = self.at;
+    }
+
+    fn stops_before(&self, bus: &mut Bus) -> bool {
+        let debug = bus.debug.as_mut();
+        debug.is_some_and(|debug| debug.stops_before(self.id, self.at))
+    }
+
+    fn stops_behind(&self, bus: &mut Bus) -> bool {
+        let debug = bus.debug.as_mut();
+        debug.is_some_and(|debug| debug.stops_behind(self.id))
     }
 
     /// Goes on at `pc`, wherever the program was.
