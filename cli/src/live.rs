@@ -11,6 +11,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use twin::board::Board;
 use twin::source::PRE_ROLL_PS;
 
+use crate::instruments::{self, Instruments};
 use crate::programme::{Offered, Programme, offered, programme};
 use crate::serial::Serial;
 use crate::{Failure, device, hardware, radio};
@@ -87,6 +88,8 @@ pub fn command() -> Command {
         .arg(flag("realtime").help("Run no faster than real time"))
         .arg(flag("stats").help("Print AT+STATS? at the end"))
         .arg(device::profile_argument())
+        .args(instruments::arguments())
+        .arg(instruments::gdb_argument())
         .arg(device::image_argument())
 }
 
@@ -133,6 +136,9 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
     ctrlc::set_handler(move || told.store(true, Ordering::Relaxed))
         .map_err(|e| Failure::Usage(format!("cannot watch for Ctrl-C: {e}")))?;
     let mut board = hardware::build(matches)?;
+    if !instruments::debug(&mut board, matches)? {
+        return Ok(());
+    }
     let done = Serial::open(matches)
         .and_then(|serial| Session::begin(&mut board, matches, serial, programme))
         .and_then(|session| session.run(&mut board, matches, &stop));
@@ -148,9 +154,12 @@ struct Session {
     /// Something is played that ends.
     finite: bool,
     profiling: Option<device::Profiling>,
+    instruments: Instruments,
     /// Where the count begins: cycles, busy cycles of both cores, device time, the world's.
     cycles: u64,
     busy: [u64; 2],
+    waits: [u64; 2],
+    misses: u64,
     started: f64,
     began: Instant,
 }
@@ -194,8 +203,11 @@ impl Session {
             log,
             finite,
             profiling: device::profile(board, matches),
+            instruments: Instruments::begin(board, matches)?,
             cycles: board.chip.now(),
             busy: board.chip.busy_cycles(),
+            waits: board.chip.wait_cycles(),
+            misses: board.chip.bus.xip.misses[0],
             started: board.seconds(),
             began: Instant::now(),
         })
@@ -217,6 +229,7 @@ impl Session {
             && left_ms > 0
         {
             board.run_ms(STEP_MS)?;
+            self.instruments.look(board)?;
             if limit.is_none() && self.finite && board.playback_finished() {
                 left_ms -= STEP_MS;
             }
@@ -240,11 +253,14 @@ impl Session {
     fn end(self, board: &mut Board, matches: &ArgMatches) -> Result<(), Failure> {
         let passed = (board.chip.now() - self.cycles) as f64;
         let busy = board.chip.busy_cycles();
+        let waits = board.chip.wait_cycles();
         let share = |k: usize| 100.0 * (busy[k] - self.busy[k]) as f64 / passed;
         let spent = Spent {
             device: board.seconds() - self.started,
             wall: self.began.elapsed().as_secs_f64(),
             load: [share(0), share(1)],
+            waits: [0, 1].map(|k| 100.0 * (waits[k] - self.waits[k]) as f64 / passed),
+            misses: board.chip.bus.xip.misses[0] - self.misses,
         };
         if let Some(profiling) = &self.profiling {
             eprint!("\n{}", profiling.tables(board, matches));
@@ -269,6 +285,7 @@ impl Session {
             heard(&stats, &self.console, offered.as_ref());
         }
         spent.tell();
+        eprint!("{}", self.instruments.end(board, matches)?);
         happened(board);
         for (name, lost) in self.serial.iter().flat_map(Serial::lost) {
             if lost > 0 {
@@ -284,12 +301,29 @@ struct Spent {
     device: f64,
     wall: f64,
     load: [f64; 2],
+    /// Of it, waiting for bus ports and flash.
+    waits: [f64; 2],
+    /// Misses of core 0 in the XIP cache.
+    misses: u64,
 }
 
 impl Spent {
     fn tell(&self) {
-        let Self { device, wall, load } = self;
-        eprintln!("core load       {:.1} %, {:.1} %", load[0], load[1]);
+        let Self {
+            device,
+            wall,
+            load,
+            waits,
+            misses,
+        } = self;
+        eprintln!(
+            "core load       {:.1} %, {:.1} %, of which waiting for bus and flash {:.1} %, {:.1} %",
+            load[0], load[1], waits[0], waits[1]
+        );
+        eprintln!(
+            "XIP cache       {:.0} misses a second",
+            *misses as f64 / device
+        );
         eprintln!(
             "device time     {device:.1} s in {wall:.1} s, {:.2} of real time",
             device / wall

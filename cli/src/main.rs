@@ -7,6 +7,7 @@ mod beast;
 mod decode;
 mod device;
 mod hardware;
+mod instruments;
 mod json;
 mod live;
 mod output;

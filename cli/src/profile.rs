@@ -41,7 +41,7 @@ impl Functions {
         Self(functions)
     }
 
-    fn at(&self, address: u32) -> &str {
+    pub fn at(&self, address: u32) -> &str {
         match self.0.range(..=address).next_back() {
             Some((start, (name, size))) if address - start < (*size).max(2) => name,
             _ => "(no name)",

@@ -10,6 +10,7 @@ use twin::native;
 use twin::source::PRE_ROLL_PS;
 
 use crate::beast;
+use crate::instruments::{self, Instruments};
 use crate::output::{self, Form, Heard, Printer};
 use crate::{Failure, device, radio};
 
@@ -41,6 +42,7 @@ pub fn command() -> Command {
         .arg(output::argument())
         .arg(Arg::new("stats").long("stats").action(clap::ArgAction::SetTrue).help("Print the counters of every stage to standard error"))
         .arg(device::profile_argument())
+        .args(instruments::arguments())
         .arg(device::image_argument())
 }
 
@@ -120,6 +122,7 @@ fn by_twin(
 
     let playback = board.play(source)?;
     let profiling = device::profile(&mut board, matches);
+    let mut instruments = Instruments::begin(&mut board, matches)?;
     let start = output::start_count(playback.start_tick, PRE_ROLL_PS);
     let mut reader = beast::Reader::default();
     let mut completed = Completed::default();
@@ -127,6 +130,7 @@ fn by_twin(
     let mut tables = None;
     while left > 0 {
         board.run_ms(1)?;
+        instruments.look(&mut board)?;
         if board.playback_finished() {
             // The recording alone, not the silence after it.
             if let (Some(profiling), None) = (&profiling, &tables) {
@@ -152,6 +156,10 @@ fn by_twin(
     }
     if let Some(tables) = tables {
         eprint!("{tables}");
+    }
+    let told = instruments.end(&mut board, matches)?;
+    if matches.get_flag("stats") || matches.get_flag("uninitialised") {
+        eprint!("{told}");
     }
     if form == Form::Csbee {
         device::command(&mut board, "AT+PROTOCOL=CONSOLE,NONE")?;

@@ -94,9 +94,15 @@ fn gdb_stops_in_a_named_function_reads_and_steps() {
 
 #[test]
 fn gdb_stops_behind_a_write_to_a_watched_variable() {
-    let (text, _, _) = session(&["watch -l hal::dma_ring::BLOCK_RELOAD", "continue", "kill"]);
+    let (text, _, _) = session(&[
+        // The first word of SRAM: data of whichever image starts.
+        "set language c",
+        "watch *(unsigned int *)0x20000000",
+        "continue",
+        "kill",
+    ]);
     assert!(
-        text.contains("hit Hardware watchpoint 1: -location hal::dma_ring::BLOCK_RELOAD"),
+        text.contains("hit Hardware watchpoint 1: *(unsigned int *)0x20000000"),
         "{text}"
     );
     assert!(text.contains("Old value"), "{text}");

@@ -109,6 +109,7 @@ impl Default for Setup {
 }
 
 /// A powered board.
+#[derive(Clone)]
 pub struct Board {
     pub chip: Chip,
     pub kind: Kind,

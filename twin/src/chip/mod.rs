@@ -54,6 +54,7 @@ const BOOT2_AT: u32 = 0x2004_1f00;
 const WHOLE_CHIP: u32 = 0x1_fffc;
 
 /// One core and how far it has run.
+#[derive(Clone)]
 pub(crate) struct Core {
     pub(crate) cpu: Cpu,
     /// Cycles spent executing, that is not asleep.
@@ -94,6 +95,7 @@ pub struct ResetEvent {
 }
 
 /// The chip.
+#[derive(Clone)]
 pub struct Chip {
     pub(crate) cores: [Core; 2],
     pub bus: Bus,

@@ -80,6 +80,7 @@ mod irq {
 }
 
 /// Memories, peripherals, and the state both cores share.
+#[derive(Clone)]
 pub struct Bus {
     pub rom: Vec<u8>,
     pub flash: Flash,
