@@ -323,7 +323,7 @@ fn the_rssi_is_the_detectors_level_at_the_instant_of_the_conversion() {
     let mut board = board(ADSBEE_1090);
     let start = board.chip.now() + 1200;
     board.chip.bus.play(
-        Box::new(Player::new(Step(0), &FrontEnd::ADSBEE_1090)),
+        crate::chip::pins::Played::Once(Box::new(Player::new(Step(0), &FrontEnd::ADSBEE_1090))),
         19,
         start,
     );
@@ -429,7 +429,10 @@ fn radio_lies_in_true_time_so_a_fast_crystal_counts_more_cycles_to_the_same_edge
         let bus = &mut board.chip.bus;
         // 100 ms, and an end.
         bus.play(
-            Box::new(Edges(vec![100_000_000_000, 200_000_000_000])),
+            crate::chip::pins::Played::Once(Box::new(Edges(vec![
+                100_000_000_000,
+                200_000_000_000,
+            ]))),
             19,
             start,
         );

@@ -30,6 +30,7 @@ use potentiometer::Potentiometer;
 use crate::chip::bus::TriggerNet;
 use crate::chip::crystal::{Crystal, Deviation};
 use crate::chip::flash::Flash;
+use crate::chip::pins::{Again, Played};
 use crate::chip::uart::FarFormat;
 use crate::chip::{Chip, Halt};
 use crate::fault::{Memory, Planned};
@@ -67,6 +68,10 @@ pub enum Error {
         "the image did not start capture within {START_SECONDS} s; {why}COMMS_UART said: {comms:?}"
     )]
     NoCapture { comms: String, why: &'static str },
+    #[error(
+        "what plays into PULSES cannot be repeated, so the board cannot be forked (play_repeatable)"
+    )]
+    Unrepeatable,
     #[error("the board {board} has no {what}")]
     NoSuchPart {
         board: &'static str,
@@ -315,6 +320,24 @@ impl Board {
     /// Starts playback of `source`: its time zero falls on the first sample of a capture word, so that a native run of the same
     /// source with phase zero samples the very same instants. The trigger level has settled by then, as on a board that is on.
     pub fn play(&mut self, source: Box<dyn PulseSource + Send>) -> Result<Playback, Error> {
+        self.start_playing(Played::Once(source))
+    }
+
+    /// The same with a source that can be made anew, so that the board can be forked while it plays.
+    pub fn play_repeatable(&mut self, again: Again) -> Result<Playback, Error> {
+        self.start_playing(Played::Again(again))
+    }
+
+    /// A copy of the whole board at this moment, chip and all that is attached: what happens to one does not concern the other, and both
+    /// go on alike, bit for bit and cycle for cycle.
+    pub fn fork(&self) -> Result<Self, Error> {
+        if !self.chip.bus.pins.playback_repeatable() {
+            return Err(Error::Unrepeatable);
+        }
+        Ok(self.clone())
+    }
+
+    fn start_playing(&mut self, source: Played) -> Result<Playback, Error> {
         self.wait_for_capture()?;
         for _ in 0..SETTLE_MS {
             if self.chip.bus.trigger_levels_settled() {

@@ -32,6 +32,7 @@ const BAUDR: usize = 5;
 const SPI_CTRLR0: usize = 61;
 
 /// Flash contents and the serial port in front of them.
+#[derive(Clone)]
 pub struct Flash {
     pub bytes: Vec<u8>,
     unique_id: [u8; 8],

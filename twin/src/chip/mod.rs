@@ -500,3 +500,5 @@ pub(crate) mod test_chip;
 #[cfg(test)]
 #[path = "chip_tests.rs"]
 mod tests;
+#[cfg(test)]
+mod trace_tests;

@@ -29,6 +29,7 @@ impl std::ops::AddAssign for Spent {
 }
 
 /// One core's table: a counter a halfword of flash and of SRAM.
+#[derive(Clone)]
 pub struct Profile {
     flash: Vec<Spent>,
     sram: Vec<Spent>,

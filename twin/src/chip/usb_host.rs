@@ -58,6 +58,7 @@ struct Endpoints {
 }
 
 /// The host and its view of the device.
+#[derive(Clone)]
 pub struct UsbHost {
     state: State,
     plugged: bool,

@@ -94,9 +94,9 @@ mod tests {
         assert_eq!(framer.next(), None);
         framer.push(b"0000,4#4");
         assert_eq!(framer.next(), None);
-        framer.push(b"9\x03$?#00");
+        framer.push(b"f\x03$?#00");
         let sum = checksum(b"m20000000,4");
-        assert_eq!(sum, 0x49);
+        assert_eq!(sum, 0x4f);
         assert_eq!(
             framer.next(),
             Some(Incoming::Packet(b"m20000000,4".to_vec()))

@@ -3,7 +3,7 @@
 use super::Bus;
 use crate::chip::adc::{AnalogInput, Steady};
 use crate::chip::outside::{Outside, Wires};
-use crate::front_end::PulseSource;
+use crate::chip::pins::Played;
 use crate::front_end::parameters::LEAST_MILLIVOLT;
 use crate::front_end::trigger_level::{SUPPLY_MV, TriggerLevel};
 use crate::source::random::Random;
@@ -127,7 +127,7 @@ impl Bus {
     }
 
     /// Plays `source` into `pin`, its time zero at cycle `start`, which lies ahead.
-    pub fn play(&mut self, source: Box<dyn PulseSource + Send>, pin: u32, start: u64) {
+    pub fn play(&mut self, source: Played, pin: u32, start: u64) {
         let hz = u128::from(self.sys_hz.max(1));
         let start_ps = self.time_ps + u128::from(start - self.since) * PS_A_SECOND / hz;
         self.apply_trigger_level();

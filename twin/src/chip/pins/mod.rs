@@ -23,6 +23,7 @@
 //! ([`Pins::change_at`]), and with every other pin, one that the chip drives itself included. Inputs of UART, SPI and I2C and the
 //! interrupt bits see those others at once.
 
+mod again;
 mod choices;
 pub mod functions;
 mod playback;
@@ -34,6 +35,8 @@ use std::collections::VecDeque;
 use super::crystal::Crystal;
 use crate::front_end::PulseSource;
 use crate::front_end::trigger_level::TriggerLevel;
+pub use again::Again;
+use again::Repeated;
 use choices::Choices;
 use functions as f;
 use playback::Playback;
@@ -51,7 +54,7 @@ const DEBUG_PADS_RESET: [u32; 2] = [0xda, 0x5a];
 const LISTENERS: usize = 3;
 
 /// Pads, function multiplexers and their interrupts.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Pins {
     ctrl: [u32; PADS],
     pads: [u32; PADS],
@@ -95,6 +98,13 @@ pub struct Pins {
     watch: u32,
 }
 
+/// What is to be played.
+pub enum Played {
+    Once(Box<dyn PulseSource + Send>),
+    /// So that copies of the chip can hear it too.
+    Again(Again),
+}
+
 /// What the peripherals offer to the multiplexer: levels and output enables, spread over the pins that can carry them.
 #[derive(Clone, Copy, Default)]
 pub struct Drivers {
@@ -129,7 +139,7 @@ impl Pins {
     /// Plays `source` into `pin`, its time zero at cycle `start`, which is nominal time `start_ps`. Replaces what played before.
     pub fn play(
         &mut self,
-        source: Box<dyn PulseSource + Send>,
+        source: Played,
         pin: u32,
         start: u64,
         start_ps: u128,
@@ -138,11 +148,20 @@ impl Pins {
         self.driven |= 1 << pin;
         self.edged |= 1 << pin;
         self.external &= !(1 << pin);
+        let source = match source {
+            Played::Once(source) => Repeated::once(source),
+            Played::Again(again) => Repeated::again(again),
+        };
         let mut playback = Playback::new(source, pin, start, start_ps, crystal.clone());
         playback.clock_changed(start, self.hz);
         self.playback = Some(playback);
         self.note_next_visible();
         self.resolve_levels();
+    }
+
+    /// Whether what plays, if anything does, can be repeated for a copy of the chip.
+    pub fn playback_repeatable(&self) -> bool {
+        self.playback.as_ref().is_none_or(Playback::is_repeatable)
     }
 
     /// The source has no further edges and all it gave were played.

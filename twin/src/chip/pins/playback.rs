@@ -7,17 +7,19 @@
 //! to that cycle, and edges that were not played yet get new cycles. At 120 MHz with an exact crystal the cycle is
 //! [`edge_tick`](crate::front_end::edge_tick), as in the native engine.
 
+use super::again::Repeated;
 use crate::chip::crystal::Crystal;
 use crate::front_end::trigger_level::TriggerLevel;
-use crate::front_end::{Edge, PulseSource, edge_tick};
+use crate::front_end::{Edge, edge_tick};
 
 /// How far the pulse source is asked ahead at a time, in picoseconds.
 const LOOKAHEAD_PS: u64 = 100_000_000;
 /// The rate at which [`edge_tick`] counts.
 const TICK_HZ: u64 = 120_000_000;
 
+#[derive(Clone)]
 pub(super) struct Playback {
-    source: Box<dyn PulseSource + Send>,
+    source: Repeated,
     pub(super) pin: u32,
     crystal: Crystal,
     /// Nominal time at playback time zero.
@@ -42,7 +44,7 @@ pub(super) struct Playback {
 
 impl Playback {
     pub(super) fn new(
-        source: Box<dyn PulseSource + Send>,
+        source: Repeated,
         pin: u32,
         start: u64,
         start_ps: u128,
@@ -144,6 +146,11 @@ impl Playback {
             self.scratch = scratch;
             self.asked = self.cycle(self.asked_ps);
         }
+    }
+
+    /// Whether a copy can be made.
+    pub(super) fn is_repeatable(&self) -> bool {
+        self.source.is_repeatable()
     }
 
     /// The next edge: its cycle and the level from then on.

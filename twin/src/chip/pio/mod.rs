@@ -31,6 +31,7 @@ pub use observed::Observed;
 use state_machine::StateMachine;
 
 /// One PIO block.
+#[derive(Clone)]
 pub struct Pio {
     sm: [StateMachine; 4],
     program: [u16; 32],

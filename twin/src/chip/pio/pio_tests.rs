@@ -32,7 +32,13 @@ impl PulseSource for Comb {
 /// A sampler like the firmware's; `spoiled` has a second instruction in its loop's place, so that the shortcut does not apply.
 fn sampler(shortcut: bool, shiftctrl: u32) -> (Pio, Pins) {
     let (mut pio, mut pins) = (Pio::new(), Pins::new());
-    pins.play(Box::new(Comb(0)), PIN, 0, 0, &Crystal::default());
+    pins.play(
+        crate::chip::pins::Played::Once(Box::new(Comb(0))),
+        PIN,
+        0,
+        0,
+        &Crystal::default(),
+    );
     pins.look_ahead(2_000_000);
     pio.write(0x048, 0x4001, 0, &mut pins);
     pio.write(0x0c8, 15 << 16, 0, &mut pins);

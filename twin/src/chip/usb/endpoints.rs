@@ -58,6 +58,7 @@ pub enum Handshake {
 }
 
 /// One half of an endpoint as a token finds it.
+#[derive(Clone)]
 struct Half {
     /// Offset of the buffer control word.
     at: usize,

@@ -64,6 +64,7 @@ pub enum Damage {
 }
 
 /// Controller state.
+#[derive(Clone)]
 pub struct Usb {
     pub dpram: Vec<u8>,
     addr_endp: u32,

@@ -1,0 +1,75 @@
+//! A fork of a running board, with the shipped image on the air: it goes on as the first one, bit for bit and cycle for cycle, and what
+//! happens to one does not concern the other.
+
+use std::sync::Arc;
+
+use twin::board::{Board, Error};
+use twin::front_end::{FrontEnd, Player, PulseSource};
+use twin::source::{Air, AirOptions, OnAir};
+
+/// A DF11 every millisecond, over noise.
+fn air() -> Box<dyn PulseSource + Send> {
+    let frame = mode_s::Frame::from_bytes(&[0x5d, 0x4b, 0x18, 0xff, 0xfc, 0x71, 0x0b]);
+    let frame = frame.expect("a DF11");
+    let messages = (1..1_000u64).map(move |ms| OnAir {
+        at_ps: ms * 1_000_000_000,
+        frame: frame.clone(),
+    });
+    Box::new(Player::new(
+        Air::new(messages, AirOptions::default()),
+        &FrontEnd::ADSBEE_1090,
+    ))
+}
+
+/// All that a program could notice of a board.
+fn state(board: &mut Board) -> (u64, [u64; 2], [u64; 2], [u32; 2], u64, Vec<u8>) {
+    let chip = &board.chip;
+    let sram = chip
+        .bus
+        .sram
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+            (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3)
+        });
+    (
+        chip.now(),
+        chip.busy_cycles(),
+        chip.wait_cycles(),
+        [0, 1].map(|core| chip.program_counter(core)),
+        sram,
+        board.console_read(),
+    )
+}
+
+#[test]
+fn a_fork_goes_on_as_the_board_does() {
+    let mut board = Board::power_on(&tests::image()).expect("the image boots");
+    board.wait_for_console().expect("the console opens");
+    board
+        .play_repeatable(Arc::new(air))
+        .expect("capture starts");
+    board.run_ms(30).expect("it runs");
+    let mut fork = board.fork().expect("the source can be repeated");
+    for board in [&mut board, &mut fork] {
+        board.console_write(b"AT+STATS?\r\n");
+    }
+    for step in 0..3 {
+        board.run_ms(20).expect("it runs");
+        fork.run_ms(20).expect("it runs");
+        let (one, other) = (state(&mut board), state(&mut fork));
+        assert_eq!(one, other, "step {step}");
+        assert!(step > 0 || !one.5.is_empty(), "the console answered");
+    }
+    // A word of the ring changed in one is not changed in the other.
+    let before = fork.chip.bus.sram[0];
+    board.chip.bus.sram[0] ^= 0xff;
+    assert_eq!(fork.chip.bus.sram[0], before);
+}
+
+#[test]
+fn a_board_whose_radio_cannot_be_repeated_refuses_to_fork() {
+    let mut board = Board::power_on(&tests::image()).expect("the image boots");
+    assert!(board.fork().is_ok(), "nothing plays");
+    board.play(air()).expect("capture starts");
+    assert!(matches!(board.fork(), Err(Error::Unrepeatable)));
+}

@@ -1,0 +1,95 @@
+//! A pulse source that can be played again, so that a copy of a running board hears what the board hears.
+//!
+//! Sources read files and hold noise generators; they are not copied. A copy makes the source anew and repeats to it everything the first
+//! one was asked and told, which gives the same edges, since sources are deterministic.
+
+use std::sync::Arc;
+
+use crate::front_end::{Edge, PulseSource};
+
+/// Makes the source anew, at its start.
+pub type Again = Arc<dyn Fn() -> Box<dyn PulseSource + Send> + Send + Sync>;
+
+/// A source and what is needed to repeat it.
+pub(super) struct Repeated {
+    source: Box<dyn PulseSource + Send>,
+    again: Option<Again>,
+    /// Questions so far: playback time up to which edges were asked for, and the trigger level told before it, if one was.
+    asked: Vec<(u64, Option<f64>)>,
+    /// Trigger level told since the last question.
+    told: Option<f64>,
+}
+
+impl Repeated {
+    /// A source that cannot be repeated.
+    pub(super) fn once(source: Box<dyn PulseSource + Send>) -> Self {
+        Self {
+            source,
+            again: None,
+            asked: Vec::new(),
+            told: None,
+        }
+    }
+
+    /// A source that can.
+    pub(super) fn again(again: Again) -> Self {
+        Self {
+            again: Some(Arc::clone(&again)),
+            ..Self::once(again())
+        }
+    }
+
+    pub(super) fn is_repeatable(&self) -> bool {
+        self.again.is_some()
+    }
+
+    pub(super) fn set_trigger_level_mv(&mut self, mv: f64) {
+        self.source.set_trigger_level_mv(mv);
+        self.told = Some(mv);
+    }
+
+    pub(super) fn next_edges(&mut self, until_ps: u64, out: &mut Vec<Edge>) {
+        if self.again.is_some() {
+            self.asked.push((until_ps, self.told.take()));
+        }
+        self.source.next_edges(until_ps, out);
+    }
+
+    pub(super) fn finished(&self) -> bool {
+        self.source.finished()
+    }
+
+    pub(super) fn detector_mv(&self, at_ps: u64) -> Option<f32> {
+        self.source.detector_mv(at_ps)
+    }
+}
+
+impl Clone for Repeated {
+    /// # Panics
+    /// Where the source cannot be repeated; `Board::fork` asks before.
+    fn clone(&self) -> Self {
+        let Some(again) = &self.again else {
+            panic!(
+                "what plays into PULSES cannot be repeated; start it with Board::play_repeatable"
+            );
+        };
+        let mut source = again();
+        let mut gone = Vec::new();
+        for (until_ps, told) in &self.asked {
+            if let Some(mv) = told {
+                source.set_trigger_level_mv(*mv);
+            }
+            source.next_edges(*until_ps, &mut gone);
+            gone.clear();
+        }
+        if let Some(mv) = self.told {
+            source.set_trigger_level_mv(mv);
+        }
+        Self {
+            source,
+            again: Some(Arc::clone(again)),
+            asked: self.asked.clone(),
+            told: self.told,
+        }
+    }
+}
