@@ -199,8 +199,8 @@ class Truth:
         return verdict
 
 
-def compare_log(name, path, squitter, ledger, samples, show):
-    frames = list(frames_of(name, path))
+def decoded(squitter, frames):
+    """What `squitter decode --json` prints, an object a frame."""
     text = "".join(f"{seconds:.6f},{hexa}\n" for seconds, hexa in frames)
     done = subprocess.run([squitter, "decode", "--json"], input=text, capture_output=True, text=True)
     if done.returncode != 0:
@@ -208,49 +208,58 @@ def compare_log(name, path, squitter, ledger, samples, show):
     lines = done.stdout.splitlines()
     if len(lines) != len(frames):
         sys.exit(f"mode_s_peer: {len(lines)} objects of {len(frames)} frames")
-    pipe, truth = PipeDecoder(), Truth()
-    kinds = collections.Counter()
-    registers = collections.Counter()
-    for (seconds, hexa), line in zip(frames, lines):
-        mine = json.loads(line)
-        bits, length = int(hexa, 16), 4 * len(hexa)
-        kinds[kind_of(bits, length)] += 1
-        ledger.frames += 1
-        df = mine["df"]
-        if df >= 24:
+    return map(json.loads, lines)
+
+
+def comm_b(seconds, mine, streamed, payload, truth, registers):
+    """What pyModeS says of a Comm-B reply, the register's fields by its decoder of the register that ours found."""
+    ours, guessed = mine.get("bds"), streamed.get("bds")
+    theirs = {key: streamed[key] for key in ("df", "icao", "altitude", "squawk") if key in streamed}
+    theirs["bds"] = guessed
+    if ours is not None:
+        values = REGISTERS[ours](payload)
+        truth.judge("ours", seconds, mine["icao"], ours, values)
+        theirs.update(values)
+    if guessed is not None:
+        is_right = truth.judge("pyModeS", seconds, mine["icao"], guessed, REGISTERS[guessed](payload))
+        if is_right and ours is None:
+            truth.judged["missed by ours", guessed]["right"] += 1
+    registers[(ours, guessed)] += 1
+    return theirs
+
+
+def compare_frame(ledger, hexa, mine, theirs):
+    bits, length = int(hexa, 16), 4 * len(hexa)
+    df = mine["df"]
+    typecode = bits >> 75 & 31 if df in (17, 18) and length == 112 else None
+    cf = bits >> (length - 8) & 7
+    for key, value in theirs.items():
+        if key in NOT_COMPARED or (key == "crc_valid" and df not in (17, 18)):
             continue
+        ledger.fields += 1
+        if not same(key, mine.get(key), value):
+            ledger.note(Difference(hexa, df, cf, typecode, key, mine.get(key), value, mine, theirs))
+
+
+def compare_log(name, path, squitter, ledger, show):
+    frames = list(frames_of(name, path))
+    pipe, truth = PipeDecoder(), Truth()
+    kinds, registers = collections.Counter(), collections.Counter()
+    for (seconds, hexa), mine in zip(frames, decoded(squitter, frames)):
+        kinds[kind_of(int(hexa, 16), 4 * len(hexa))] += 1
+        ledger.frames += 1
+        # pyModeS knows no DF24.
+        if mine["df"] >= 24:
+            continue
+        truth.hear(seconds, mine)
         # The stream's decoder withholds fields that its memory doubts; of the frame alone all are wanted.
         streamed = pipe.decode(hexa, timestamp=seconds)
-        theirs = dict(streamed if df in (20, 21) else Message(hexa).decode())
-        truth.hear(seconds, mine)
-        if df in (20, 21):
-            guessed = theirs.get("bds")
-            kept = {key: theirs.get(key) for key in ("df", "icao", "crc_valid", "altitude", "squawk", "bds")}
-            kept = {key: value for key, value in kept.items() if key in theirs or key == "bds"}
-            payload = bits >> 24 & (1 << 56) - 1
-            ours = mine.get("bds")
-            verdict = None
-            if ours is not None:
-                # With pyModeS's own decoder of the register that ours found.
-                decoded = REGISTERS[ours](payload)
-                verdict = truth.judge("ours", seconds, mine["icao"], ours, decoded)
-                kept.update(decoded)
-            if guessed is not None:
-                judged = truth.judge("pyModeS", seconds, mine["icao"], guessed, REGISTERS[guessed](payload))
-                if judged and ours is None:
-                    truth.judged["missed by ours", guessed]["right"] += 1
-            registers[(ours, guessed)] += 1
-            theirs = kept
-        for key, value in theirs.items():
-            if key in NOT_COMPARED or key.startswith("_") or (key == "crc_valid" and df not in (17, 18)):
-                continue
-            ledger.fields += 1
-            if not same(key, mine.get(key), value):
-                me = bits >> 24 & (1 << 56) - 1 if length == 112 else 0
-                typecode = me >> 51 if df in (17, 18) else None
-                cf = bits >> (length - 8) & 7
-                ledger.note(Difference(hexa, df, cf, typecode, key, mine.get(key), value, mine, theirs))
-    samples[name] = (kinds, registers, truth)
+        if mine["df"] in (20, 21):
+            payload = int(hexa, 16) >> 24 & (1 << 56) - 1
+            theirs = comm_b(seconds, mine, streamed, payload, truth, registers)
+        else:
+            theirs = Message(hexa).decode()
+        compare_frame(ledger, hexa, mine, theirs)
     print(f"{name}: {len(frames)} frames of {len(kinds)} kinds")
     if show:
         for (ours, guessed), count in sorted(registers.items(), key=lambda row: -row[1]):
@@ -302,10 +311,10 @@ def main():
     if options.save:
         save(options.save)
     accepted = read_accepted(options.accepted)
-    ledger, samples = Ledger(accepted), {}
+    ledger = Ledger(accepted)
     for log in options.log:
         name, path = log.split("=", 1)
-        compare_log(name, path, options.squitter, ledger, samples, options.show)
+        compare_log(name, path, options.squitter, ledger, options.show)
     moved = []
     for rule, (count, reason) in accepted.items():
         print(f"{ledger.counts[rule]:8} {rule}: {reason}")

@@ -113,6 +113,7 @@ version                 of ADS-B, 0-7
 capability_class, operational_mode  16 bits as sent
 nic_supplement_a, nic_supplement_c  0 | 1
 gva, sda, baq           0-3
+gva_metres              metres: what GVA stands for
 hrd                     headings are 0 true, 1 magnetic
 trk_hdg                 surface positions hold 0 track, 1 heading
 ident_switch, atc_services, cdti, arv_capability, ts_capability  true | false

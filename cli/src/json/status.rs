@@ -119,6 +119,7 @@ pub(super) fn put_operational(status: &OperationalStatus, fields: &mut Fields) {
         put_sil(sil, fields);
     }
     fields.may_put("gva", status.gva);
+    fields.may_put("gva_metres", status.gva.and_then(quality::gva_m));
     fields.may_put("sda", status.sda);
     fields.may_put("baq", status.baro_quality);
     fields.may_put("tc_capability", status.trajectory_change);

@@ -18,6 +18,7 @@ mod commb;
 mod height;
 mod ledger;
 mod logs;
+mod ours;
 mod peer_adsb_deku;
 mod peer_rs1090;
 mod places;
@@ -86,7 +87,7 @@ fn compare_log(log: Log, compared: [(Peer, u32); 2]) {
     let mut tracked = tracked::Tracked::new();
     let mut comm_b = commb::CommB::new();
     for Heard { at_ms, frame } in &frames {
-        let ours = view::ours(frame);
+        let ours = ours::view(frame);
         let rs1090 = peer_rs1090::view(frame);
         compare_fields(
             &mut ledger,
