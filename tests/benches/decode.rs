@@ -14,17 +14,13 @@
 //! Rows take turns, [`ROUNDS`] times; the median counts. Cycles: the image hears a log with its ports silent; everything that core 0 spends in
 //! `mode_s`, `tracker`, the receiver's loop over frames and the compiler's memory and division functions, by frames decoded. The ends of seconds are in it.
 
-#[path = "../tests/golden/logs.rs"]
-#[allow(dead_code, reason = "the golden tests name the logs in their reports")]
-mod logs;
-
-use logs::Log;
 use mode_s::{Bds, Frame, Known, Message, infer};
 use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Instant;
 use tests::Bench;
+use tests::logs::{self, Log};
 use tests::profile::Functions;
 use tracker::{Aircraft, Heard, Tracker};
 use twin::board::Board;

@@ -3,6 +3,7 @@
 pub mod beast;
 pub mod cpu_peer;
 pub mod image_peer;
+pub mod logs;
 pub mod power_cuts;
 pub mod profile;
 pub mod reception;

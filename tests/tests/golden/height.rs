@@ -7,9 +7,9 @@
 //!   TC 22   AC 1D5, as altitude  4725 ft      as metres 469 m = 1539 ft
 //! ```
 
-use crate::logs::Log;
 use mode_s::{AltitudeFt, AltitudeSource, Body, Me, Message, Parity};
 use std::collections::HashMap;
+use tests::logs::Log;
 
 /// Barometric altitude in steps of 100 ft, the difference and the height in steps of 25 ft: half of each may be lost.
 const QUANTUM_FT: i32 = 75;

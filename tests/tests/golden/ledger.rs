@@ -1,9 +1,9 @@
 //! Counts agreements, and explains each difference by a line of the accepted table or not at all.
 
-use crate::logs::Log;
 use crate::view::{Field, Said};
 use mode_s::{Frame, Message};
 use std::collections::BTreeMap;
+use tests::logs::Log;
 
 /// A decoder to compare with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -17,7 +17,6 @@ mod accepted;
 mod commb;
 mod height;
 mod ledger;
-mod logs;
 mod ours;
 mod peer_adsb_deku;
 mod peer_rs1090;
@@ -28,8 +27,8 @@ mod view;
 
 use accepted::ACCEPTED;
 use ledger::{Difference, Ledger, Peer, Subject, is_same};
-use logs::{Heard, Log};
 use mode_s::{Frame, Message, Parity};
+use tests::logs::{Heard, Log};
 use view::{Field, Said, View};
 
 /// Fields that are compared even where our parity check refuses the frame.

@@ -9,7 +9,6 @@
 //! A place is wrong when the aircraft could not have flown between it and most of the others; "wrong" is asserted to be 0 for us and printed for
 //! rs1090. What it is not: the arithmetic of CPR is compared in `places`.
 
-use crate::logs::{Heard, Log};
 use crate::peer_rs1090;
 use crate::places::degrees;
 use mode_s::{Address, Body, Frame, Icao, Me, Message, crc24};
@@ -18,6 +17,7 @@ use rs1090::decode::ICAO;
 use rs1090::decode::adsb::ME;
 use rs1090::decode::cpr::{AircraftState, decode_position};
 use std::collections::BTreeMap;
+use tests::logs::{Heard, Log};
 use tracker::{Outcome, Tracker};
 
 /// Seconds around a place in which other places judge it.
