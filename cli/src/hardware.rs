@@ -161,3 +161,27 @@ fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
         cause,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each name in the help's first column is one that is read.
+    #[test]
+    fn the_faults_of_the_help_exist() {
+        let rows = FAULTS.lines().take_while(|l| !l.starts_with("WHEN"));
+        let names = rows.filter_map(|l| l.strip_prefix("  ")?.split("  ").next());
+        let mut count = 0;
+        for name in names.flat_map(str::split_whitespace) {
+            let example = name
+                .replace("[=MS]", "=5")
+                .replace("MEMORY:ADDRESS.BIT", "sram:1f.0")
+                .replace("MEMORY:RATE", "flash:1")
+                .replace("PORT:RATE", "gnss:0.5")
+                .replace("=N", "=3");
+            assert!(example.parse::<Planned>().is_ok(), "{example}");
+            count += 1;
+        }
+        assert_eq!(count, 24);
+    }
+}
