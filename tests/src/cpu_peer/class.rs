@@ -52,4 +52,5 @@ classes! {
     Mrs = "mrs",
     Msr = "msr",
     BarrierHint = "barriers, nop yield sev",
+    Exception = "exceptions taken and left",
 }

@@ -83,10 +83,7 @@ pub fn build(blocks: &[Block]) -> Vec<u8> {
     let (driver, _) = driver();
     put(&mut ram, RAM, &driver.code);
     put_words(&mut ram, CURRENT, &[slot(0), 0, 0, slot(blocks.len())]);
-    // "wb" is mode 5 (ARM semihosting, SYS_OPEN).
-    put_words(&mut ram, OPEN, &[FILE_NAME, 5, RESULT_FILE.len() as u32]);
-    put_words(&mut ram, WRITE, &[0, RAM, RAM_BYTES as u32]);
-    put(&mut ram, FILE_NAME, RESULT_FILE.as_bytes());
+    put_semihosting(&mut |at, words| put_words(&mut ram, at, words));
     for (n, block) in blocks.iter().enumerate() {
         put_words(&mut ram, slot(n), &block.record);
         put(&mut ram, slot(n) + CODE, &block.code);
@@ -128,6 +125,48 @@ struct Driver {
     code: Vec<u8>,
     leave: u32,
     fault: u32,
+}
+
+/// Where semihosting finds its arguments: the file's name, and what goes into it.
+pub fn put_semihosting(put: &mut impl FnMut(u32, &[u32])) {
+    // "wb" is mode 5 (ARM semihosting, SYS_OPEN).
+    put(OPEN, &[FILE_NAME, 5, RESULT_FILE.len() as u32]);
+    put(WRITE, &[0, RAM, RAM_BYTES as u32]);
+    let name = RESULT_FILE.as_bytes().chunks(4);
+    let words: Vec<u32> = name
+        .map(|part| {
+            part.iter()
+                .rfold(0, |word, byte| word << 8 | u32::from(*byte))
+        })
+        .collect();
+    put(FILE_NAME, &words);
+}
+
+/// Ends the run: [`DONE`] becomes `how`, and on QEMU the host writes the RAM to a file.
+pub fn tell(a: &mut Assembly, how: u32) {
+    a.literal(1, how);
+    tell_r1(a);
+}
+
+/// The same with the value in r1.
+fn tell_r1(a: &mut Assembly) {
+    let emit = |a: &mut Assembly, halfwords: &[u16]| {
+        for halfword in halfwords {
+            a.put(Class::BarrierHint, *halfword);
+        }
+    };
+    a.literal(0, DONE);
+    emit(a, &[0x6001]); // str r1, [r0]
+    a.literal(0, ON_QEMU);
+    emit(a, &[0x6800, 0x2800, 0xd0fe]); // ldr r0, [r0]; cmp r0, #0; beq .
+    emit(a, &[0x2001]); // movs r0, #SYS_OPEN
+    a.literal(1, OPEN);
+    emit(a, &[0xbeab]); // bkpt 0xab
+    a.literal(1, WRITE);
+    emit(a, &[0x6008, 0x2005, 0xbeab]); // str r0, [r1]; movs r0, #SYS_WRITE; bkpt 0xab
+    emit(a, &[0x2018]); // movs r0, #SYS_EXIT
+    a.literal(1, 0x2_0026); // ADP_Stopped_ApplicationExit
+    emit(a, &[0xbeab, 0xe7fe]); // bkpt 0xab; b .
 }
 
 /// The driver's code. Its classes mean nothing; its instructions are not counted.
@@ -184,18 +223,7 @@ fn driver() -> (Driver, usize) {
     let fault = a.here();
     a.literal(1, DONE_FAULT);
     let tell = a.here();
-    a.literal(0, DONE);
-    emit(&mut a, &[0x6001]); // str r1, [r0]
-    a.literal(0, ON_QEMU);
-    emit(&mut a, &[0x6800, 0x2800, 0xd0fe]); // ldr r0, [r0]; cmp r0, #0; beq .
-    emit(&mut a, &[0x2001]); // movs r0, #SYS_OPEN
-    a.literal(1, OPEN);
-    emit(&mut a, &[0xbeab]); // bkpt 0xab
-    a.literal(1, WRITE);
-    emit(&mut a, &[0x6008, 0x2005, 0xbeab]); // str r0, [r1]; movs r0, #SYS_WRITE; bkpt 0xab
-    emit(&mut a, &[0x2018]); // movs r0, #SYS_EXIT
-    a.literal(1, 0x2_0026); // ADP_Stopped_ApplicationExit
-    emit(&mut a, &[0xbeab, 0xe7fe]); // bkpt 0xab; b .
+    tell_r1(&mut a);
     a.patch(to_finish, |a| a.branch_if(0, finish));
     a.patch(to_tell, |a| a.branch(tell));
     let (code, listing) = a.finish();

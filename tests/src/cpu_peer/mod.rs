@@ -5,14 +5,15 @@
 //!                                                 └─ sides::in_qemu ──┘
 //! ```
 //! A block that differs is run again cut shorter and shorter, which finds the first unit that differs. What counts as compared is what
-//! the twin executed, in blocks whose end states are the same. Not compared: exceptions, sleep, faults, cycles (`tests/cpu_cycles.rs`
-//! has ARM's table), and whatever the ARMv6-M ARM leaves UNPREDICTABLE.
+//! the twin executed, in blocks whose end states are the same. Exceptions have programs of their own ([`exceptions`]). Not compared: sleep,
+//! cycles (`tests/cpu_cycles.rs` has ARM's table), and whatever the ARMv6-M ARM leaves UNPREDICTABLE.
 
 mod arithmetic;
 mod assembly;
 mod branches;
 pub mod class;
 pub mod dice;
+mod exceptions;
 pub mod forms;
 mod generator;
 mod image;
@@ -29,6 +30,9 @@ pub use sides::find_qemu;
 
 /// Differences that are narrowed down before the run gives up.
 const MOST_DIFFERENCES: usize = 10;
+
+/// One program of exceptions for so many instructions.
+const INSTRUCTIONS_AN_EXCEPTION_PROGRAM: u64 = 2_500;
 
 /// How two sides differ in a block.
 #[derive(Debug, Clone)]
@@ -153,6 +157,15 @@ pub fn compare(seed: u64, instructions: u64) -> Result<Outcome, String> {
         }
     }
     outcome.try_forms(seed)?;
+    for _ in 0..1 + instructions / INSTRUCTIONS_AN_EXCEPTION_PROGRAM {
+        if outcome.unexplained.len() >= MOST_DIFFERENCES {
+            break;
+        }
+        match exceptions::compare(dice.bits())? {
+            Ok(count) => *outcome.agreed.entry(Class::Exception).or_default() += count,
+            Err(difference) => outcome.unexplained.push(difference),
+        }
+    }
     Ok(outcome)
 }
 

@@ -30,12 +30,25 @@ pub struct End {
     pub fault: Option<String>,
 }
 
-/// Runs the image in the twin.
+/// Runs the image in the twin, where a HardFault ends it.
 pub fn in_twin(ram: &[u8]) -> End {
+    run_in_twin(ram, None)
+}
+
+/// Runs an image that handles its HardFaults, with its vectors at this address.
+pub fn in_twin_with(ram: &[u8], vectors: u32) -> End {
+    run_in_twin(ram, Some(vectors))
+}
+
+fn run_in_twin(ram: &[u8], vectors: Option<u32>) -> End {
     let mut chip = Chip::new(Flash::new(1 << 20, [0; 8]));
     // The flash is empty on purpose: no program but the image.
     chip.bus.fault = None;
     chip.take_over(0, RAM, ram, 0);
+    if let Some(vectors) = vectors {
+        chip.bus.ppb[0].vtor = vectors;
+        chip.stop_at_hard_fault = false;
+    }
     chip.start_profile();
     let mut fault = None;
     let limit = chip.now() + MOST_CYCLES;
@@ -74,13 +87,18 @@ pub fn find_qemu() -> Result<String, String> {
 
 /// Runs the image in QEMU.
 pub fn in_qemu(ram: &[u8]) -> Result<End, String> {
+    in_qemu_with(ram, &image::vectors())
+}
+
+/// Runs an image in QEMU with these vectors.
+pub fn in_qemu_with(ram: &[u8], vectors: &[u8]) -> Result<End, String> {
     static RUNS: AtomicU32 = AtomicU32::new(0);
     let run = RUNS.fetch_add(1, Ordering::Relaxed);
     let folder = Scratch::new(&format!("squitter-cpu-{}-{run}", std::process::id()))?;
     let write = |name: &str, bytes: &[u8]| {
         std::fs::write(folder.0.join(name), bytes).map_err(|e| format!("{name}: {e}"))
     };
-    write("vectors.raw", &image::vectors())?;
+    write("vectors.raw", vectors)?;
     write("image.raw", &image::for_qemu(ram.to_vec()))?;
     let mut qemu = Command::new(QEMU)
         .current_dir(&folder.0)
