@@ -38,14 +38,15 @@ pub const FORMS: &[Form] = &[
         code: &[0xf3ef, 0x8307],
         is: |h0, h1| reads(h0, h1, 7),
     },
+    // movs r3, #8; lsls r3, r3, #24; msr iapsr, r3; mrs r4, apsr.
     Form {
         name: "msr iapsr",
-        code: &[0xf383, 0x8801],
+        code: &[0x2308, 0x061b, 0xf383, 0x8801, 0xf3ef, 0x8400],
         is: |h0, h1| writes(h0, h1, 1),
     },
     Form {
         name: "msr eapsr",
-        code: &[0xf383, 0x8802],
+        code: &[0x2308, 0x061b, 0xf383, 0x8802, 0xf3ef, 0x8400],
         is: |h0, h1| writes(h0, h1, 2),
     },
     Form {
