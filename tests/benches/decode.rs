@@ -11,16 +11,16 @@
 //!
 //! `--cycles`: the cycles alone; `--functions`: also by function.
 //!
-//! Rows take turns, [`ROUNDS`] times; the median counts. Cycles: the image hears a log with its ports silent; everything that core 0 spends in
+//! Rows take turns, [`ROUNDS`] times; the median of the thread's processor time counts. Cycles: the image hears a log with its ports silent; everything that core 0 spends in
 //! `mode_s`, `tracker`, the receiver's loop over frames and the compiler's memory and division functions, by frames decoded. The ends of seconds are in it.
 
 use mode_s::{Bds, Frame, Known, Message, infer};
 use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::process::ExitCode;
-use std::time::Instant;
 use tests::Bench;
 use tests::logs::{self, Log};
+use tests::processor_time::ProcessorTime;
 use tests::profile::Functions;
 use tracker::{Aircraft, Heard, Tracker};
 use twin::board::Board;
@@ -164,7 +164,7 @@ fn rates(bench: &mut Bench, frames: &[Sample]) -> BTreeMap<&'static str, f64> {
     let mut taken: BTreeMap<&str, usize> = BTreeMap::new();
     for _ in 0..ROUNDS {
         for (name, row) in ROWS {
-            let start = Instant::now();
+            let start = ProcessorTime::now();
             let count = row(frames);
             times
                 .entry(name)

@@ -11,9 +11,9 @@
 //! Time is the processor time of the thread, so that what else the machine does counts as little as can be; compare rows of one run.
 
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use tests::Bench;
+use tests::processor_time::ProcessorTime;
 use twin::board::{Board, TICK_HZ};
 use twin::chip::flash::Flash;
 use twin::front_end::{Edge, FrontEnd, Player, PulseSource};
@@ -56,35 +56,6 @@ fn main() -> std::io::Result<()> {
     bench.finish(&format!(
         "realtime={realtime:.3} image_noise={image:.3} image_traffic={traffic:.3}"
     ))
-}
-
-/// Processor time of this thread; wall time where the system does not tell.
-struct ProcessorTime {
-    used: Option<Duration>,
-    wall: Instant,
-}
-
-impl ProcessorTime {
-    fn now() -> Self {
-        Self {
-            used: Self::used(),
-            wall: Instant::now(),
-        }
-    }
-
-    /// Linux: nanoseconds on a processor, the first word.
-    fn used() -> Option<Duration> {
-        let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-        let ns = text.split_whitespace().next()?.parse().ok()?;
-        Some(Duration::from_nanos(ns))
-    }
-
-    fn elapsed(&self) -> Duration {
-        match (self.used, Self::used()) {
-            (Some(before), Some(now)) => now - before,
-            _ => self.wall.elapsed(),
-        }
-    }
 }
 
 fn measure(bench: &mut Bench, name: &str, mut board: Board) -> f64 {

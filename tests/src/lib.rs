@@ -5,6 +5,7 @@ pub mod cpu_peer;
 pub mod image_peer;
 pub mod logs;
 pub mod power_cuts;
+pub mod processor_time;
 pub mod profile;
 pub mod reception;
 
