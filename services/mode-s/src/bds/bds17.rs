@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   1   0,5  0,6  0,7  0,8  0,9  0,A  2,0  2,1     9   4,0  4,1  4,2  4,3  4,4  4,5  4,8  5,0
-//!   17  5,1  5,2  5,3  5,4  5,5  5,6  5,F  6,0     25-28 reserved     29-56 zeros
+//!   17  5,1  5,2  5,3  5,4  5,5  5,6  5,F  6,0     25-29 reserved     30-56 zeros
 //! ```
 //! Each bit announces a register; that of 2,0 is always 1. Source: ICAO Doc 9871, table A-2-23, as rs1090 documents it.
 
@@ -44,7 +44,7 @@ pub struct GicbCapability(pub u32);
 impl GicbCapability {
     /// Decodes MB as register 1,7.
     pub fn decode(mb: MeBits) -> Option<GicbCapability> {
-        (mb.bit(7) && mb.bits(29, 56) == 0).then(|| GicbCapability(mb.bits(1, 24)))
+        (mb.bit(7) && mb.bits(30, 56) == 0).then(|| GicbCapability(mb.bits(1, 24)))
     }
 
     /// The registers it announces.
@@ -86,7 +86,7 @@ mod tests {
     fn without_2_0_or_with_a_late_bit_it_is_another_register() {
         for bytes in [
             [0xF8, 0x81, 0xC1, 0, 0, 0, 0],
-            [0xFA, 0x81, 0xC1, 0x08, 0, 0, 0],
+            [0xFA, 0x81, 0xC1, 0x04, 0, 0, 0],
         ] {
             assert_eq!(GicbCapability::decode(MeBits::new(bytes)), None);
         }

@@ -3,7 +3,7 @@
 //! | BDS | register | file | how it is told |
 //! |---|---|---|---|
 //! | 1,0 | data link capability | `bds10` | first byte 10 |
-//! | 1,7 | common usage GICB capability | `bds17` | announces 2,0, ends in 28 zeros |
+//! | 1,7 | common usage GICB capability | `bds17` | announces 2,0, ends in 27 zeros |
 //! | 2,0 | aircraft identification | `bds20` | first byte 20, eight characters |
 //! | 3,0 | ACAS active resolution advisory | `bds30` | first byte 30 |
 //! | 4,0 | selected vertical intention | `bds40` | status bits, ten zeros |
