@@ -30,8 +30,9 @@ pub const AIRCRAFT: usize = 400;
 const TICKS_PER_MS: u64 = timer::TICKS_PER_US * 1000;
 /// Time for `AT+REBOOT`'s reply to leave, microseconds.
 const REBOOT_AFTER_US: u64 = 100_000;
-/// Frames a turn of the loop: so that ports are served in between.
-const FRAMES_A_TURN: usize = 16;
+/// Frames a turn of the loop: so that ports are served in between. A turn moves one USB packet of 64 bytes; with many more frames a turn than make a packet,
+/// the console's buffer would fill although the bus is idle whenever core 0 has a backlog.
+const FRAMES_A_TURN: usize = 4;
 
 /// Counters that core 1 writes.
 pub struct SharedCounters {
