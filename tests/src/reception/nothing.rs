@@ -56,6 +56,8 @@ pub struct Outcome {
     pub exact: Vec<String>,
     pub repaired: Vec<String>,
     pub by_address: Vec<String>,
+    /// DF11 of a known address that were sent, with wrong bits behind the address: not out of nothing, but wrong.
+    pub damaged: Vec<String>,
     pub counters: Vec<(&'static str, u64)>,
 }
 
@@ -67,6 +69,7 @@ impl Outcome {
         self.exact.extend(other.exact);
         self.repaired.extend(other.repaired);
         self.by_address.extend(other.by_address);
+        self.damaged.extend(other.damaged);
         if self.counters.is_empty() {
             self.counters = other.counters;
         } else {
@@ -176,7 +179,9 @@ impl Run {
             }
             let hex = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
             let exact = matches!(raw.frame.df().number(), 11 | 17..=19);
+            let damaged = sent.iter().any(|known| known[..4] == bytes[..4]);
             match (exact, raw.repaired()) {
+                _ if damaged => outcome.damaged.push(hex),
                 (true, 0) if raw.frame.residual() == 0 => outcome.exact.push(hex),
                 (true, 1..) => outcome.repaired.push(hex),
                 _ => outcome.by_address.push(hex),
