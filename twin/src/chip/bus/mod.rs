@@ -22,6 +22,7 @@ mod registers;
 mod schedule;
 mod shadow;
 mod transfers;
+mod used;
 mod world;
 mod xip;
 
@@ -30,6 +31,7 @@ pub use fabric::{Fabric, sram_port};
 pub use fault::{Cause, Fault, ResetCause};
 use schedule::Deadlines;
 pub use shadow::{Reader, Shadow, Uninitialised};
+pub use used::Used;
 pub use world::TriggerNet;
 pub use xip::{Closed, Xip};
 
@@ -130,6 +132,8 @@ pub struct Bus {
     pub wfe: [bool; 2],
     dma_at: u64,
     deadlines: Deadlines,
+    /// Registers touched, while somebody wants to know.
+    used: Option<Box<Used>>,
     /// The cycle at which the DMA can make its next transfer.
     dma_free: u64,
     pub pio: [Pio; 2],
@@ -207,6 +211,7 @@ impl Bus {
             wfe: [false; 2],
             dma_at: u64::MAX,
             deadlines: Deadlines::default(),
+            used: None,
             dma_free: 0,
             pio: [Pio::new(), Pio::new()],
             dma: Dma::default(),

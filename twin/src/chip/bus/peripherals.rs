@@ -2,6 +2,7 @@
 //!
 //! Source: RP2040 datasheet 2.1.2 (atomic access), 2.1.4 (narrow writes), 2.14 (RESETS).
 
+use super::used::Used;
 use super::{Bus, Fault, blocks};
 
 impl Bus {
@@ -49,7 +50,20 @@ impl Bus {
         self.lines_dirty = true;
     }
 
+    /// From now on notes which registers are touched.
+    pub fn note_registers(&mut self) {
+        self.used = Some(Box::default());
+    }
+
+    /// The registers touched since [`Bus::note_registers`].
+    pub fn registers_used(&self) -> Option<&Used> {
+        self.used.as_deref()
+    }
+
     pub(super) fn peripheral_read(&mut self, address: u32) -> u32 {
+        if let Some(used) = &mut self.used {
+            used.note(address, false);
+        }
         if self.held_in_reset("read", address) {
             return 0;
         }
@@ -75,6 +89,9 @@ impl Bus {
         } else {
             address & !0x3000
         };
+        if let Some(used) = &mut self.used {
+            used.note(plain, true);
+        }
         let base = plain & 0xffff_c000;
         if self.held_in_reset("write", plain) {
             return;
