@@ -219,3 +219,48 @@ impl Receiver {
         Some((end, character))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parity_bits_are_those_of_the_pl011() {
+        // Three ones, and four.
+        for (parity, three, four) in [
+            (Parity::None, None, None),
+            (Parity::Odd, Some(false), Some(true)),
+            (Parity::Even, Some(true), Some(false)),
+            (Parity::Mark, Some(true), Some(true)),
+            (Parity::Space, Some(false), Some(false)),
+        ] {
+            assert_eq!(
+                (parity.bit(0x31), parity.bit(0x33)),
+                (three, four),
+                "{parity:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_start_bit_that_is_not_low_in_its_middle_is_passed_over() {
+        let framing = Framing {
+            bit: 1_000,
+            data_bits: 8,
+            parity: Parity::None,
+            stop_bits: 1,
+        };
+        let mut wave = Wave::default();
+        // A spike of 0.4 bits, then a character.
+        wave.set(100, false);
+        wave.set(500, true);
+        wave.character(5_000, 0x5a, &framing, 0);
+        let mut ears = Receiver::default();
+        assert_eq!(ears.next(&wave, &framing), Some(14_500));
+        let (end, heard) = ears.take(&mut wave, &framing, 14_500).expect("a character");
+        assert_eq!(
+            (end, heard.data, heard.framing_error),
+            (14_500, 0x5a, false)
+        );
+    }
+}
