@@ -13,7 +13,7 @@ fn air() -> Box<dyn PulseSource + Send> {
     let frame = frame.expect("a DF11");
     let messages = (1..1_000u64).map(move |ms| OnAir {
         at_ps: ms * 1_000_000_000,
-        frame: frame.clone(),
+        frame,
     });
     Box::new(Player::new(
         Air::new(messages, AirOptions::default()),

@@ -4,6 +4,32 @@ use std::process::Command;
 
 use crate::{check, fw, golden, peers, size, workspace};
 
+/// Programs of others that the tests run, what for, and Debian's package.
+const PROGRAMS: [(&str, &str, &str); 6] = [
+    (
+        "qemu-system-arm",
+        "against which the twin's CPU core is checked",
+        "qemu-system-arm",
+    ),
+    (
+        "gdb-multiarch",
+        "which the twin's remote port is tested with",
+        "gdb-multiarch",
+    ),
+    (
+        "dump1090-mutability",
+        "beside which reception is measured",
+        "dump1090-mutability",
+    ),
+    (
+        "sb",
+        "which sends YMODEM to the bootloader's receiver",
+        "lrzsz",
+    ),
+    ("node", "whose emulator the twin is compared with", "nodejs"),
+    ("npm", "which brings that emulator", "npm"),
+];
+
 /// Runs all of it.
 pub fn run() -> Result<(), String> {
     let data = workspace::root()?.join("../shared/data/modes1.bin");
@@ -12,25 +38,11 @@ pub fn run() -> Result<(), String> {
             "the recordings are missing: ../shared/data beside the project; the tests that read them would fail".into(),
         );
     }
-    if Command::new("qemu-system-arm")
-        .arg("--version")
-        .output()
-        .is_err()
-    {
-        return Err(
-            "qemu-system-arm is missing, against which the twin's CPU core is checked; install it: apt-get install qemu-system-arm"
-                .into(),
-        );
-    }
-    if Command::new("sb").arg("--version").output().is_err() {
-        return Err(
-            "sb is missing, which sends YMODEM to the bootloader's receiver; install it: apt-get install lrzsz".into(),
-        );
-    }
-    for program in ["node", "npm"] {
+    for (program, why, package) in PROGRAMS {
+        // Whatever it says to that: it is there.
         if Command::new(program).arg("--version").output().is_err() {
             return Err(format!(
-                "{program} is missing, whose emulator the twin is compared with; install it: apt-get install nodejs npm"
+                "{program} is missing, {why}; install it: apt-get install {package}"
             ));
         }
     }
