@@ -8,8 +8,8 @@
 //! Gillham: D2 D4 A1 A2 A4 B1 B2 B4 count 500 ft in reflected (Gray) code, C1 C2 C4 count 100 ft 1-5 in a code of their own that runs
 //! backwards in every other 500 ft. Source: ICAO Annex 10 Volume IV (the AC field and the table of Mode C pulses). It reserves M = 1
 //! for metric altitudes without saying how they count; "The 1090 Megahertz Riddle" reads metres in binary. They have a name of their
-//! own here and are never taken for the aircraft's altitude: of the 27 replies with M = 1 in the Los Angeles log of adsb_deku none is
-//! within 1000 ft of the altitude its aircraft told just before and after; all are noise whose parity happened to fit.
+//! own here and are never taken for the aircraft's altitude: the Los Angeles log of adsb_deku has 27 replies with M = 1, and none of the 17
+//! whose aircraft told its altitude about that time is within 700 ft of it; they are noise whose parity happened to fit.
 
 /// Altitude in feet; which one (pressure or geometric) is told by the field that holds it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -21,7 +21,7 @@ pub static ACCEPTED: &[Accepted] = &[
     },
     Accepted {
         peer: Peer::Rs1090,
-        reason: "rs1090 reads an AC field with M = 1 as an altitude; here a metric altitude has a name of its own, since all 27 are noise",
+        reason: "rs1090 reads an AC field with M = 1 as an altitude; here it has a name of its own; those of the log are noise",
         applies: |d| d.is_of(Field::Altitude) && is_metric(d),
         counts: [0, 27],
     },
