@@ -6,6 +6,7 @@
 //! | two cores | the same loop on both |
 //! | + capture + DMA | both loops, PIO sampling noise at 8 Msps, DMA into a ring of 8 KiB with its control channel |
 //! | image, noise | the shipped image, both cores at their own work, the air's noise at every sample; front end included |
+//! | asleep, receiver off | all asleep but an alarm a second (`tests::long`): emulated seconds a second |
 //! | image, traffic | the same with the message log that the crate `rs1090` carries |
 //!
 //! Time is the processor time of the thread, so that what else the machine does counts as little as can be; compare rows of one run.
@@ -21,6 +22,8 @@ use twin::source::{Air, AirOptions, MessageLog};
 
 /// Cycles a row: a second at 120 MHz.
 const CYCLES: u64 = TICK_HZ;
+/// Emulated seconds of the sleeping row.
+const IDLE_SECONDS: u64 = 600;
 /// Time between the messages of a log without times; this one has them.
 const SPACING_PS: u64 = 1_000_000_000;
 /// Words of the loop: `ldr r1,[r0]; adds r1,#1; eors r2,r1; lsrs r3,r2,#3; str r1,[r0]; adds r4,r3,r1; cmp r4,r2; bne .+0; b loop`.
@@ -53,8 +56,9 @@ fn main() -> std::io::Result<()> {
         Some(log) => measure(&mut bench, "image, traffic", self::image(Some(log))),
         None => panic!("SQUITTER_LOG names no message log; run this as `cargo xtask bench twin`"),
     };
+    let idle = idle(&mut bench);
     bench.finish(&format!(
-        "realtime={realtime:.3} image_noise={image:.3} image_traffic={traffic:.3}"
+        "realtime={realtime:.3} image_noise={image:.3} image_traffic={traffic:.3} idle={idle:.0}"
     ))
 }
 
@@ -69,6 +73,25 @@ fn measure(bench: &mut Bench, name: &str, mut board: Board) -> f64 {
     bench.line(&format!("{name:<28} {mhz:>13.1} {realtime:>20.2}"));
     bench.row(format!("{name},{mhz:.2},{realtime:.4}"));
     realtime
+}
+
+/// A device with its receiver off: real seconds it needs less, and the cycles it is awake, which are all it costs.
+fn idle(bench: &mut Bench) -> f64 {
+    let mut board = tests::long::asleep().expect("the image boots");
+    let start = ProcessorTime::now();
+    let slept = tests::long::sleep(&mut board, IDLE_SECONDS).expect("it sleeps");
+    let times = IDLE_SECONDS as f64 / start.elapsed().as_secs_f64();
+    bench.line(&format!(
+        "{:<28} {:>13.0} {times:>20.0}  ({} cycles awake in {IDLE_SECONDS} s)",
+        "asleep, receiver off",
+        times * TICK_HZ as f64 / 1e6,
+        slept.busy[0] + slept.busy[1]
+    ));
+    bench.row(format!(
+        "asleep,{:.0},{times:.1}",
+        times * TICK_HZ as f64 / 1e6
+    ));
+    times
 }
 
 /// A board whose cores run [`LOOP`] for ever, with or without capture, its clocks set as the images set them.

@@ -4,6 +4,7 @@ pub mod beast;
 pub mod cpu_peer;
 pub mod image_peer;
 pub mod logs;
+pub mod long;
 pub mod power_cuts;
 pub mod processor_time;
 pub mod profile;
@@ -65,6 +66,25 @@ pub fn flag(name: &str) -> bool {
 /// Whether this is a run of `cargo bench`: `cargo test` only wants to see a benchmark build.
 pub fn is_bench() -> bool {
     flag("--bench")
+}
+
+/// The log of one long flight that the crate `rs1090` carries: `SQUITTER_LOG`, or where Cargo says the crate lies.
+pub fn log() -> PathBuf {
+    if let Some(path) = std::env::var_os("SQUITTER_LOG") {
+        return PathBuf::from(path);
+    }
+    let output = std::process::Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--offline"])
+        .current_dir(root())
+        .output()
+        .expect("cargo metadata runs");
+    let text = String::from_utf8_lossy(&output.stdout);
+    let manifest = text
+        .split("\"manifest_path\":\"")
+        .filter_map(|rest| rest.split('"').next())
+        .find(|path| path.contains("/rs1090-"))
+        .expect("rs1090 is a dependency of the tests");
+    PathBuf::from(manifest).with_file_name("data/long_flight.csv")
 }
 
 /// Table, CSV and result line of a benchmark.

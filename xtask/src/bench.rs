@@ -7,10 +7,14 @@ use std::process::Command;
 use crate::{fw, golden, peers, workspace};
 
 /// The benchmarks and what they measure.
-const BENCHES: [(&str, &str); 12] = [
+const BENCHES: [(&str, &str); 13] = [
     (
         "twin",
         "emulated MHz and share of real time: one core, two cores, two cores with capture and DMA, the image on real traffic",
+    ),
+    (
+        "twin-long",
+        "drift, leaks and balance over --day (a day asleep) and --hour (an hour of traffic); without either both in short",
     ),
     (
         "reception",
