@@ -6,6 +6,7 @@ use clap::{Arg, ArgMatches, value_parser};
 use twin::board::Board;
 
 use crate::Failure;
+use crate::instruments;
 use crate::profile::Functions;
 
 /// Where `cargo xtask fw` puts the image, from the checkout's root.
@@ -72,6 +73,7 @@ impl Profiling {
 /// Powers the device of `--image` on and waits until it listens on both sides.
 pub fn start(matches: &ArgMatches) -> Result<Board, Failure> {
     let mut board = Board::power_on(&image(matches))?;
+    instruments::at_power_on(&mut board, matches);
     board.wait_for_capture()?;
     board.wait_for_console()?;
     Ok(board)

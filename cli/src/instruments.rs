@@ -46,6 +46,13 @@ pub fn gdb_argument() -> Arg {
         .help("Wait for GDB on this address, such as 127.0.0.1:3333, and let it have the device from the start")
 }
 
+/// Starts what must see the device from its power-on.
+pub fn at_power_on(board: &mut Board, matches: &ArgMatches) {
+    if matches.get_flag("uninitialised") {
+        board.chip.watch_uninitialised();
+    }
+}
+
 /// What is under way.
 pub struct Instruments {
     vcd: Option<BufWriter<File>>,
@@ -62,9 +69,6 @@ impl Instruments {
             if let Some((lowest, _)) = stack {
                 board.chip.set_stack_limit(core, *lowest);
             }
-        }
-        if matches.get_flag("uninitialised") {
-            board.chip.watch_uninitialised();
         }
         let vcd = match matches.get_one::<PathBuf>("vcd") {
             Some(path) => {

@@ -136,6 +136,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
     ctrlc::set_handler(move || told.store(true, Ordering::Relaxed))
         .map_err(|e| Failure::Usage(format!("cannot watch for Ctrl-C: {e}")))?;
     let mut board = hardware::build(matches)?;
+    instruments::at_power_on(&mut board, matches);
     if !instruments::debug(&mut board, matches)? {
         return Ok(());
     }
