@@ -73,18 +73,7 @@ pub fn log() -> PathBuf {
     if let Some(path) = std::env::var_os("SQUITTER_LOG") {
         return PathBuf::from(path);
     }
-    let output = std::process::Command::new(env!("CARGO"))
-        .args(["metadata", "--format-version", "1", "--offline"])
-        .current_dir(root())
-        .output()
-        .expect("cargo metadata runs");
-    let text = String::from_utf8_lossy(&output.stdout);
-    let manifest = text
-        .split("\"manifest_path\":\"")
-        .filter_map(|rest| rest.split('"').next())
-        .find(|path| path.contains("/rs1090-"))
-        .expect("rs1090 is a dependency of the tests");
-    PathBuf::from(manifest).with_file_name("data/long_flight.csv")
+    logs::folder_of("rs1090").join("data/long_flight.csv")
 }
 
 /// Table, CSV and result line of a benchmark.
