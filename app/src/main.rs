@@ -30,7 +30,9 @@ use confirm::{Confirm, Due};
 use console::Console;
 use core::sync::atomic::Ordering;
 use core1::{Context, QUEUE_SLOTS, QueueCounters};
-use demod::{Counters, Demodulator, RawFrame, SampleRing};
+use demod::{
+    ArrivalRing, Calibration, Counters, Demodulator, LevelRing, RawFrame, Rings, SampleRing,
+};
 use drivers::led::Led;
 use drivers::pulse_capture::{CaptureCounters, PulseCapture};
 use drivers::trigger_level::{self, TriggerLevel};
@@ -52,6 +54,8 @@ const BEAT_US: u64 = 50_000;
 const _: () = assert!(TRIGGER_LEVEL_PERIOD == trigger_level::PERIOD);
 
 static RING: SampleRing = SampleRing::new();
+static ARRIVAL_RING: ArrivalRing = ArrivalRing::new();
+static LEVEL_RING: LevelRing = LevelRing::new();
 static QUEUE: TakeOnce<Queue<RawFrame, QUEUE_SLOTS>> = TakeOnce::new(Queue::new());
 static CORE1: TakeOnce<Option<Context>> = TakeOnce::new(None);
 static TRACKER: TakeOnce<Tracker<AIRCRAFT>> = TakeOnce::new(Tracker::new());
@@ -87,13 +91,25 @@ fn start() -> Option<core::convert::Infallible> {
 
     let (producer, consumer) = QUEUE.take()?.split();
     let capture_start_us = timer::now_us();
-    let capture =
-        PulseCapture::start(parts.sampler, parts.dma, &RING.words, &SHARED.capture).ok()?;
+    let capture = PulseCapture::start(
+        parts.sampler,
+        &mut parts.converter,
+        parts.dma,
+        &RING.words,
+        &ARRIVAL_RING.words,
+        &LEVEL_RING.words,
+        &SHARED.capture,
+    )
+    .ok()?;
     let context = CORE1.take()?;
     *context = Some(Context {
         capture,
-        ring: &RING,
-        demodulator: Demodulator::new(),
+        rings: Rings {
+            samples: &RING,
+            arrival: &ARRIVAL_RING,
+            level: &LEVEL_RING,
+        },
+        demodulator: Demodulator::new(Calibration::ADSBEE_1090),
         demod_counters: &SHARED.demod,
         queue: producer,
         queue_counters: &SHARED.queue,

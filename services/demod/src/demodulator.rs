@@ -12,13 +12,15 @@
 //!
 //! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 160 µs.
 
+use crate::arrival::{self, Arrival, COARSE_SIGMA};
 use crate::counters::{Counters, add};
 use crate::gate::{Gate, Pairs, REACH, STEER_WORDS, STEP_WORDS};
 use crate::headless::{self, STRONG, WAIT_WORDS};
 use crate::heard::Heard;
+use crate::level::{self, Calibration};
 use crate::preamble::{self, mismatches, ones};
 use crate::repair::Flips;
-use crate::ring::{RING_WORDS, SampleRing};
+use crate::ring::{RING_WORDS, Rings, SampleRing};
 use crate::trial::{Outcome, Tried, from_sample, received, try_phases};
 use crate::{SAMPLES_PER_WORD, TICKS_PER_SAMPLE};
 use mode_s::Frame;
@@ -38,6 +40,9 @@ const PREAMBLE_SAMPLES: u32 = 64;
 const BIT_SAMPLES: u32 = 8;
 /// Samples before an accepted frame's end at which another may start: 12 µs, a preamble and four bits.
 const TAIL_SAMPLES: u64 = 96;
+/// Ticks after which a frame's conversions, and its samples of the second sampler, may be overwritten: the rings hold 279 000 and 458 000.
+const MOST_LEVEL_AGE: u64 = 250_000;
+const MOST_ARRIVAL_AGE: u64 = 430_000;
 /// Words before strong bits began in which their preamble may stand, tried.
 const TRIED_WITHIN: u32 = 8;
 
@@ -48,9 +53,13 @@ pub struct RawFrame {
     pub frame: Frame,
     /// Which bits were repaired: [`RawFrame::received`] takes them back.
     pub flips: Flips,
-    /// Tick (120 MHz) of the leading edge of the preamble's first pulse, from the first capture sample.
+    /// Tick (120 MHz) of the leading edge of the preamble's first pulse, from the first capture sample, rounded down.
     pub arrival: u64,
-    /// Signal level in a hundredth of a dBm; not measured so far.
+    /// The rest of the arrival, in 1/256 of a tick.
+    pub arrival_parts: u8,
+    /// The arrival's standard uncertainty, in 1/256 of a tick.
+    pub arrival_sigma: u16,
+    /// Signal level at the antenna in a hundredth of a dBm.
     pub level: Option<i16>,
 }
 
@@ -85,11 +94,16 @@ pub struct Demodulator {
     strong_since: u32,
     strong_last: u32,
     tried_last: u32,
+    arrivals: arrival::Anchor,
+    levels: level::Anchor,
+    calibration: Calibration,
+    /// Words written when the call under way began.
+    written: u64,
 }
 
 impl Demodulator {
-    /// Nothing heard, at the start of capture.
-    pub const fn new() -> Self {
+    /// Nothing heard, at the start of capture, on this board.
+    pub const fn new(calibration: Calibration) -> Self {
         Self {
             next: 0,
             free_from: 0,
@@ -98,14 +112,18 @@ impl Demodulator {
             strong_since: 0,
             strong_last: u32::MAX,
             tried_last: u32::MAX,
+            arrivals: arrival::Anchor::new(),
+            levels: level::Anchor::new(),
+            calibration,
+            written: 0,
         }
     }
 
-    /// Works off the ring up to `written` words since the start of capture, and gives each accepted frame to `sink`.
+    /// Works off the rings up to `written` words since the start of capture, and gives each accepted frame to `sink`.
     #[inline]
     pub fn run(
         &mut self,
-        ring: &SampleRing,
+        rings: Rings,
         written: u64,
         counters: &Counters,
         sink: &mut impl FnMut(RawFrame),
@@ -113,9 +131,15 @@ impl Demodulator {
         if written.saturating_sub(self.next) > MOST_BEHIND {
             self.skip(written, counters);
         }
+        self.written = written;
         self.heard.at_word(self.next);
+        let now = ticks(self.next * u64::from(SAMPLES_PER_WORD));
+        self.arrivals.follow(now);
+        self.levels.follow(2 * now);
+        let ring = rings.samples;
         while let Some(pairs) = self.find(ring, written, counters) {
-            if let Some(frame) = self.examine(ring, pairs, counters) {
+            if let Some(mut frame) = self.examine(ring, pairs, counters) {
+                self.measure(rings, &mut frame);
                 sink(frame);
             }
         }
@@ -300,14 +324,44 @@ impl Demodulator {
             frame,
             flips: tried.flips,
             arrival: ticks(first),
+            arrival_parts: 0,
+            arrival_sigma: COARSE_SIGMA,
             level: None,
         })
+    }
+
+    /// Adds what the other two rings know of a frame, unless they have been overwritten since.
+    #[inline(never)]
+    fn measure(&self, rings: Rings, frame: &mut RawFrame) {
+        let age = ticks(self.written * u64::from(SAMPLES_PER_WORD)).saturating_sub(frame.arrival);
+        if age < MOST_LEVEL_AGE {
+            frame.level = level::measure(
+                rings.level,
+                &self.levels,
+                self.calibration,
+                frame.arrival,
+                frame.frame.bytes(),
+            );
+        }
+        if age < MOST_ARRIVAL_AGE {
+            let Arrival {
+                ticks,
+                parts,
+                sigma,
+            } = arrival::measure(
+                rings.arrival,
+                &self.arrivals,
+                frame.arrival,
+                frame.frame.bytes(),
+            );
+            (frame.arrival, frame.arrival_parts, frame.arrival_sigma) = (ticks, parts, sigma);
+        }
     }
 }
 
 impl Default for Demodulator {
     fn default() -> Self {
-        Self::new()
+        Self::new(Calibration::ADSBEE_1090)
     }
 }
 
