@@ -63,6 +63,7 @@ pub fn run(slot: &'static mut Option<Context>) -> ! {
 fn block(context: &mut Context) {
     let written = context.capture.wait();
     let Context {
+        capture,
         rings,
         demodulator,
         demod_counters,
@@ -71,7 +72,8 @@ fn block(context: &mut Context) {
         ..
     } = context;
     let mut heard = false;
-    demodulator.run(*rings, written, demod_counters, &mut |frame| {
+    let mut newest = || capture.written();
+    demodulator.run(*rings, written, demod_counters, &mut newest, &mut |frame| {
         heard = true;
         count(&queue_counters.offered);
         match queue.enqueue(frame) {

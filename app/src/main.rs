@@ -17,6 +17,7 @@
 #![no_main]
 #![forbid(unsafe_code)]
 
+mod air;
 mod confirm;
 mod console;
 mod core1;
@@ -25,6 +26,7 @@ mod receiver;
 mod reports;
 mod stats;
 
+use air::Air;
 use boot_contract::hand_over::{Cause, HandOver};
 use confirm::{Confirm, Due};
 use console::Console;
@@ -86,7 +88,7 @@ fn start() -> Option<core::convert::Infallible> {
     parts.watchdog.start(WATCHDOG_US);
     let mut led = Led::new(parts.led);
     // A PWM that cannot be set is not a thing on this chip: the error type is empty.
-    let _trigger_level = TriggerLevel::new(parts.trigger_level).ok()?;
+    let trigger_level = TriggerLevel::new(parts.trigger_level).ok()?;
     let console = parts.usb.attach()?;
 
     let (producer, consumer) = QUEUE.take()?.split();
@@ -135,6 +137,7 @@ fn start() -> Option<core::convert::Infallible> {
         last: (0, 0),
         reboot: None,
         confirm: Confirm::new(parts.flash),
+        air: Air::new(parts.converter, trigger_level, &RING, &LEVEL_RING),
     };
     let mut input = Console::new();
     let mut next_beat_us = timer::now_us() + BEAT_US;
@@ -154,6 +157,7 @@ fn start() -> Option<core::convert::Infallible> {
         let now_us = timer::now_us();
         if now_us >= next_beat_us {
             led.beat();
+            receiver.look();
             next_beat_us = next_beat(now_us, capture_start_us);
         }
         let blocks = SHARED.capture.blocks.load(Ordering::Relaxed);

@@ -9,6 +9,7 @@ mod device;
 mod hardware;
 mod instruments;
 mod json;
+mod levels;
 mod live;
 mod output;
 mod ports;

@@ -81,9 +81,7 @@ impl<const N: usize> PulseCapture<N> {
     #[inline]
     pub fn wait(&mut self) -> u64 {
         self.ring.wait_block();
-        // Position first: the time read after it is at most late, which the clock tolerates by 4 ms.
-        let position = self.ring.position();
-        let written = self.clock.advance(position, timer::now_us_low());
+        let written = self.written();
         let counters = self.counters;
         count(&counters.blocks, 1);
         counters.words.store(written as u32, Ordering::Relaxed);
@@ -91,6 +89,14 @@ impl<const N: usize> PulseCapture<N> {
             count(&counters.fifo_overflows, 1);
         }
         written
+    }
+
+    /// Words written since the start, now.
+    #[inline]
+    pub fn written(&mut self) -> u64 {
+        // Position first: the time read after it is at most late, which the clock tolerates by 4 ms.
+        let position = self.ring.position();
+        self.clock.advance(position, timer::now_us_low())
     }
 }
 

@@ -73,7 +73,10 @@ pub fn run(
         sampler.sample_before(edge_tick(until_ps));
         second.sample_before(edge_tick(until_ps));
         converter.convert_before(2 * edge_tick(until_ps), source, &level_ring);
-        demodulator.run(rings, sampler.words(), &counters, &mut |frame| sink(frame));
+        let words = sampler.words();
+        demodulator.run(rings, words, &counters, &mut || words, &mut |frame| {
+            sink(frame)
+        });
     }
     counters.snapshot()
 }

@@ -40,8 +40,8 @@ const PREAMBLE_SAMPLES: u32 = 64;
 const BIT_SAMPLES: u32 = 8;
 /// Samples before an accepted frame's end at which another may start: 12 µs, a preamble and four bits.
 const TAIL_SAMPLES: u64 = 96;
-/// Ticks after which a frame's conversions, and its samples of the second sampler, may be overwritten: the rings hold 279 000 and 458 000.
-const MOST_LEVEL_AGE: u64 = 250_000;
+/// Ticks after which a frame's conversions, and its samples of the second sampler, may be overwritten: the rings hold 558 000 and 458 000.
+const MOST_LEVEL_AGE: u64 = 530_000;
 const MOST_ARRIVAL_AGE: u64 = 430_000;
 /// Words before strong bits began in which their preamble may stand, tried.
 const TRIED_WITHIN: u32 = 8;
@@ -97,8 +97,6 @@ pub struct Demodulator {
     arrivals: arrival::Anchor,
     levels: level::Anchor,
     calibration: Calibration,
-    /// Words written when the call under way began.
-    written: u64,
 }
 
 impl Demodulator {
@@ -115,23 +113,23 @@ impl Demodulator {
             arrivals: arrival::Anchor::new(),
             levels: level::Anchor::new(),
             calibration,
-            written: 0,
         }
     }
 
-    /// Works off the rings up to `written` words since the start of capture, and gives each accepted frame to `sink`.
+    /// Works off the rings up to `written` words since the start of capture, and gives each accepted frame to `sink`. `newest` tells how many words there are by
+    /// then: a long backlog takes its time, in which the smaller rings go on.
     #[inline]
     pub fn run(
         &mut self,
         rings: Rings,
         written: u64,
         counters: &Counters,
+        newest: &mut impl FnMut() -> u64,
         sink: &mut impl FnMut(RawFrame),
     ) {
         if written.saturating_sub(self.next) > MOST_BEHIND {
             self.skip(written, counters);
         }
-        self.written = written;
         self.heard.at_word(self.next);
         let now = ticks(self.next * u64::from(SAMPLES_PER_WORD));
         self.arrivals.follow(now);
@@ -139,7 +137,7 @@ impl Demodulator {
         let ring = rings.samples;
         while let Some(pairs) = self.find(ring, written, counters) {
             if let Some(mut frame) = self.examine(ring, pairs, counters) {
-                self.measure(rings, &mut frame);
+                self.measure(rings, newest(), &mut frame);
                 sink(frame);
             }
         }
@@ -332,8 +330,8 @@ impl Demodulator {
 
     /// Adds what the other two rings know of a frame, unless they have been overwritten since.
     #[inline(never)]
-    fn measure(&self, rings: Rings, frame: &mut RawFrame) {
-        let age = ticks(self.written * u64::from(SAMPLES_PER_WORD)).saturating_sub(frame.arrival);
+    fn measure(&self, rings: Rings, written: u64, frame: &mut RawFrame) {
+        let age = ticks(written * u64::from(SAMPLES_PER_WORD)).saturating_sub(frame.arrival);
         if age < MOST_LEVEL_AGE {
             frame.level = level::measure(
                 rings.level,

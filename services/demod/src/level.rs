@@ -16,7 +16,7 @@ use crate::ring::LevelRing;
 /// Half ticks between two conversions: 109 cycles of 48 MHz.
 pub const LEVEL_HALF_TICKS: u32 = 545;
 /// Half ticks from the first capture sample to the first conversion's hold.
-pub const LEVEL_START_HALF_TICKS: u64 = 0;
+pub const LEVEL_START_HALF_TICKS: u64 = 8;
 
 /// Half ticks of a bit, and of half of one.
 const BIT: u32 = 240;
@@ -114,11 +114,11 @@ pub(crate) fn measure(
     let (mut index, mut offset) = anchor.first_from(2 * arrival + PREAMBLE);
     let (mut sum, mut count) = (0, 0);
     let mut bit = 0u32;
+    while offset >= BIT {
+        offset -= BIT;
+        bit += 1;
+    }
     loop {
-        while offset >= BIT {
-            offset -= BIT;
-            bit += 1;
-        }
         let Some(&byte) = frame.get((bit >> 3) as usize) else {
             break;
         };
@@ -133,7 +133,63 @@ pub(crate) fn measure(
             count += 1;
         }
         index = index.wrapping_add(1);
-        offset += LEVEL_HALF_TICKS;
+        // A period is two bits and 65 half ticks.
+        const { assert!(LEVEL_HALF_TICKS - 2 * BIT == 65) };
+        bit += 2;
+        offset += LEVEL_HALF_TICKS - 2 * BIT;
+        if offset >= BIT {
+            offset -= BIT;
+            bit += 1;
+        }
     }
     (count >= LEAST).then(|| calibration.level(sum, count))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRAME: [u8; 14] = [
+        0x8D, 0x4C, 0xA7, 0xE8, 0x58, 0xB9, 0x83, 0x82, 0x06, 0xBA, 0x42, 0x2B, 0xBD, 0x7B,
+    ];
+
+    /// Whether a pulse of the frame that began at `arrival` (half ticks) has been up for RISEN at this half tick.
+    fn under_a_pulse(arrival: u64, half_tick: u64) -> Option<bool> {
+        let at = half_tick.checked_sub(arrival + PREAMBLE)?;
+        let byte = FRAME.get(at as usize / 240 / 8)?;
+        let one = byte >> (7 - at / 240 % 8) & 1 != 0;
+        let since = (at % 240).checked_sub(if one { 0 } else { 120 });
+        Some(since.is_some_and(|since| (60..120).contains(&since)))
+    }
+
+    #[test]
+    fn only_conversions_under_pulses_count_at_any_time_of_the_day() {
+        for arrival in [1_000u64, 23_439_360 + 651_234, 120_000_000 * 86_400] {
+            let ring = LevelRing::new();
+            let first = (2 * arrival - LEVEL_START_HALF_TICKS) / 545;
+            let mut met = 0;
+            for index in first..first + 120 {
+                let held = LEVEL_START_HALF_TICKS + 545 * index;
+                let under = under_a_pulse(2 * arrival, held) == Some(true);
+                met += u32::from(under);
+                ring.store(index, if under { 1800 } else { 700 });
+            }
+            let mut anchor = Anchor::new();
+            anchor.follow((2 * arrival).saturating_sub(100_000));
+            let level = measure(&ring, &anchor, Calibration::ADSBEE_1090, arrival, &FRAME);
+            assert!(met > 8, "{met}");
+            assert_eq!(
+                level,
+                Some(Calibration::ADSBEE_1090.of_code(1800)),
+                "{arrival}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_vendor_s_conversion() {
+        // 1600 mV is 0 dBm at the detector, -44 dBm at the antenna; 1100 mV is 30 dB less.
+        assert!((Calibration::ADSBEE_1090.of_code(1986) + 4_400).abs() <= 6);
+        assert!((Calibration::ADSBEE_1090.of_code(1366) + 7_400).abs() <= 6);
+    }
 }

@@ -44,8 +44,8 @@ impl Default for SampleRing {
 
 /// Words in the ring of the second sampler: 8 KiB, 3.8 ms of samples.
 pub const ARRIVAL_WORDS: usize = 2048;
-/// Words in the ring of levels: 4 KiB, 2.3 ms of conversions.
-pub const LEVEL_WORDS: usize = 1024;
+/// Words in the ring of levels: 8 KiB, 4.7 ms of conversions.
+pub const LEVEL_WORDS: usize = 2048;
 
 /// The samples of the second sampler, 32 a word, the oldest in the most significant bit.
 #[repr(C, align(8192))]
@@ -85,7 +85,7 @@ impl Default for ArrivalRing {
 }
 
 /// The converter's results, one a word.
-#[repr(C, align(4096))]
+#[repr(C, align(8192))]
 pub struct LevelRing {
     /// Conversion `n` is in word `n` modulo the ring, 12 bits.
     pub words: [AtomicU32; LEVEL_WORDS],

@@ -79,7 +79,10 @@ impl Scene {
                 second += 1;
             }
             if written % 32 == 0 {
-                demodulator.run(rings, written as u64, &counters, &mut |f| frames.push(f));
+                let written = written as u64;
+                demodulator.run(rings, written, &counters, &mut || written, &mut |f| {
+                    frames.push(f)
+                });
             }
         }
         let counters = counters.snapshot();
@@ -181,7 +184,13 @@ fn an_address_is_forgotten_after_a_minute() {
             ring.store(written, 0);
             written += 1;
             if written.is_multiple_of(32) {
-                demodulator.run(rings(&ring), written, &counters, &mut |_| heard += 1);
+                demodulator.run(
+                    rings(&ring),
+                    written,
+                    &counters,
+                    &mut || written,
+                    &mut |_| heard += 1,
+                );
             }
         }
         let mut scene = Scene::silent(2048);
@@ -193,7 +202,13 @@ fn an_address_is_forgotten_after_a_minute() {
             ring.store(written, word);
             written += 1;
         }
-        demodulator.run(rings(&ring), written, &counters, &mut |_| heard += 1);
+        demodulator.run(
+            rings(&ring),
+            written,
+            &counters,
+            &mut || written,
+            &mut |_| heard += 1,
+        );
     }
     // 56 s after the exact frame it is known, 62 s after it is not.
     assert_eq!(heard, 2);
@@ -290,11 +305,18 @@ fn a_lapped_ring_is_counted_and_left_behind() {
     let ring = SampleRing::new();
     let counters = Counters::new();
     let mut demodulator = Demodulator::default();
-    demodulator.run(rings(&ring), 10_000_000_000, &counters, &mut |_| {});
+    demodulator.run(
+        rings(&ring),
+        10_000_000_000,
+        &counters,
+        &mut || 10_000_000_000,
+        &mut |_| {},
+    );
     demodulator.run(
         rings(&ring),
         10_000_000_000 + 5 * RING_WORDS as u64,
         &counters,
+        &mut || u64::MAX >> 8,
         &mut |_| {},
     );
     let counters = counters.snapshot();

@@ -82,7 +82,19 @@ mod tests {
     #[test]
     fn help_has_a_line_for_each_command_and_the_rates_it_names_are_the_limits() {
         let names: std::vec::Vec<&str> = help_lines().map(|(name, _)| name).collect();
-        assert_eq!(names, ["HELP", "STATS", "PROTOCOL", "BAUDRATE", "REBOOT"]);
+        assert_eq!(
+            names,
+            [
+                "HELP",
+                "STATS",
+                "PROTOCOL",
+                "BAUDRATE",
+                "TL_SET",
+                "TL_READ",
+                "REBOOT",
+                "REBOOT_BOOTLOADER"
+            ]
+        );
         let (_, help) = help_lines().find(|(name, _)| *name == "BAUDRATE").unwrap();
         let range = std::format!("{}-{}", crate::LOWEST_BAUD, crate::HIGHEST_BAUD);
         assert!(help.contains(&range));

@@ -4,8 +4,8 @@ use super::Bus;
 use crate::chip::adc::{AnalogInput, Steady};
 use crate::chip::outside::{Outside, Wires};
 use crate::chip::pins::Played;
+use crate::front_end::rssi_mv;
 use crate::front_end::trigger_level::{SUPPLY_MV, TriggerLevel};
-use crate::front_end::{PulseSource, rssi_mv};
 
 const PS_A_SECOND: u128 = 1_000_000_000_000;
 
