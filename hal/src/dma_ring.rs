@@ -12,7 +12,7 @@
 //! | stream | channels | from | words | a word every |
 //! |---|---|---|---|---|
 //! | samples | 0, 1 | PIO0 RX0 | 2048 | 4 µs; its blocks raise DMA_IRQ_1 |
-//! | arrival | 2, 3 | PIO0 RX1 | 2048 | 1.867 µs |
+//! | arrival | 2, 3 | PIO0 RX1 | 4096 | 1.867 µs |
 //! | level | 4, 5 | ADC FIFO | 2048 | 2.271 µs |
 //!
 //! The write address is never rewritten, so it stays the one truth of how far the ring is. Between two blocks the PIO's FIFO

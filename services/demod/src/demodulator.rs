@@ -40,9 +40,9 @@ const PREAMBLE_SAMPLES: u32 = 64;
 const BIT_SAMPLES: u32 = 8;
 /// Samples before an accepted frame's end at which another may start: 12 µs, a preamble and four bits.
 const TAIL_SAMPLES: u64 = 96;
-/// Ticks after which a frame's conversions, and its samples of the second sampler, may be overwritten: the rings hold 558 000 and 458 000.
+/// Ticks after which a frame's conversions, and its samples of the second sampler, may be overwritten: the rings hold 558 000 and 917 000.
 const MOST_LEVEL_AGE: u64 = 530_000;
-const MOST_ARRIVAL_AGE: u64 = 430_000;
+const MOST_ARRIVAL_AGE: u64 = 890_000;
 /// Words before strong bits began in which their preamble may stand, tried.
 const TRIED_WITHIN: u32 = 8;
 

@@ -118,10 +118,7 @@ pub(crate) fn measure(
         offset -= BIT;
         bit += 1;
     }
-    loop {
-        let Some(&byte) = frame.get((bit >> 3) as usize) else {
-            break;
-        };
+    while let Some(&byte) = frame.get((bit >> 3) as usize) {
         let one = byte >> (7 - (bit & 7)) & 1 != 0;
         let since_edge = if one {
             offset

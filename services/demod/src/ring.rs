@@ -42,13 +42,13 @@ impl Default for SampleRing {
     }
 }
 
-/// Words in the ring of the second sampler: 8 KiB, 3.8 ms of samples.
-pub const ARRIVAL_WORDS: usize = 2048;
+/// Words in the ring of the second sampler: 16 KiB, 7.6 ms of samples, as long as the longest backlog of the first.
+pub const ARRIVAL_WORDS: usize = 4096;
 /// Words in the ring of levels: 8 KiB, 4.7 ms of conversions.
 pub const LEVEL_WORDS: usize = 2048;
 
 /// The samples of the second sampler, 32 a word, the oldest in the most significant bit.
-#[repr(C, align(8192))]
+#[repr(C, align(16384))]
 pub struct ArrivalRing {
     /// Sample `n` is in word `n / 32` modulo the ring.
     pub words: [AtomicU32; ARRIVAL_WORDS],
