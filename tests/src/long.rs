@@ -12,8 +12,8 @@ const WATCHDOG_CTRL: u32 = 0x4005_8000;
 const NVIC_ISER: u32 = 0xe000_e100;
 const NVIC_ICER: u32 = 0xe000_e180;
 const NVIC_ICPR: u32 = 0xe000_e280;
-/// RESETS bits of DMA, PIO0, PIO1 and USBCTRL.
-const OFF: u32 = 1 << 2 | 1 << 10 | 1 << 11 | 1 << 24;
+/// RESETS bits of ADC, DMA, PIO0, PIO1 and USBCTRL.
+const OFF: u32 = 1 | 1 << 2 | 1 << 10 | 1 << 11 | 1 << 24;
 const CODE: u32 = 0x2003_0000;
 const SLEEP: u32 = 0x2003_1000;
 const COUNT: u32 = 0x2003_2000;
@@ -30,7 +30,7 @@ const WAKES: [u16; 11] = [
 /// `wfi; b`.
 const SLEEPS: [u16; 2] = [0xbf30, 0xe7fd];
 
-/// A device with its receiver off: clocks as the image sets them, capture, DMA and USB in reset, core 1 asleep for ever, core 0 woken once a
+/// A device with its receiver off: clocks as the image sets them, capture, converter, DMA and USB in reset, core 1 asleep for ever, core 0 woken once a
 /// second by an alarm of the microsecond timer.
 pub fn asleep() -> Result<Board, String> {
     let mut board = Board::power_on(&crate::image()).map_err(|e| e.to_string())?;
@@ -114,6 +114,7 @@ impl OnTheAir {
     /// A device that hears nothing yet.
     pub fn new(log: &Path) -> Result<Self, String> {
         let mut board = Board::power_on(&crate::image()).map_err(|e| e.to_string())?;
+        board.wait_for_capture().map_err(|e| e.to_string())?;
         board.wait_for_console().map_err(|e| e.to_string())?;
         Ok(Self {
             board,
