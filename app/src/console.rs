@@ -113,20 +113,6 @@ pub fn answer(command: Result<Request, Refusal>, receiver: &mut Receiver) {
             );
         }
         Request::SetBaudRate { .. } => reply(&mut receiver.console, format_args!("{OK}")),
-        Request::QueryTriggerLevel => tell_trigger_level(receiver),
-        Request::SetTriggerLevel { low_mv, high_mv } => {
-            receiver.air.set(low_mv, high_mv);
-            tell_trigger_level(receiver);
-            reply(&mut receiver.console, format_args!("{OK}"));
-        }
-        Request::LearnTriggerLevel => {
-            receiver.air.learn();
-            reply(&mut receiver.console, format_args!("{OK}"));
-        }
-        Request::ReadTriggerLevel => {
-            let mv = receiver.air.read_mv();
-            reply(&mut receiver.console, format_args!("+TL_READ={mv}"));
-        }
         Request::Reboot => {
             reply(&mut receiver.console, format_args!("{OK}"));
             receiver.reboot_soon(HandOver::Restart(Cause::Command));
@@ -136,12 +122,6 @@ pub fn answer(command: Result<Request, Refusal>, receiver: &mut Receiver) {
             receiver.reboot_soon(HandOver::Stay(Cause::Command));
         }
     }
-}
-
-/// `+TL_SET=<lo>,<hi>`
-fn tell_trigger_level(receiver: &mut Receiver) {
-    let (low, high) = receiver.air.levels_mv();
-    reply(&mut receiver.console, format_args!("+TL_SET={low},{high}"));
 }
 
 /// One reply line.

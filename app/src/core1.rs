@@ -7,7 +7,7 @@
 //! Everything here, and all it calls, is placed in SRAM by `linker/app.x`; interrupts stay masked.
 
 use core::sync::atomic::{AtomicU32, Ordering};
-use demod::{Counters, Demodulator, RING_WORDS, RawFrame, Rings};
+use demod::{Counters, Demodulator, RING_WORDS, RawFrame, SampleRing};
 use drivers::pulse_capture::PulseCapture;
 use heapless::spsc::Producer;
 
@@ -38,7 +38,7 @@ impl QueueCounters {
 /// What core 1 owns.
 pub struct Context {
     pub capture: PulseCapture<RING_WORDS>,
-    pub rings: Rings<'static>,
+    pub ring: &'static SampleRing,
     pub demodulator: Demodulator,
     pub demod_counters: &'static Counters,
     pub queue: Producer<'static, RawFrame>,
@@ -63,8 +63,7 @@ pub fn run(slot: &'static mut Option<Context>) -> ! {
 fn block(context: &mut Context) {
     let written = context.capture.wait();
     let Context {
-        capture,
-        rings,
+        ring,
         demodulator,
         demod_counters,
         queue,
@@ -72,8 +71,7 @@ fn block(context: &mut Context) {
         ..
     } = context;
     let mut heard = false;
-    let mut newest = || capture.written();
-    demodulator.run(*rings, written, demod_counters, &mut newest, &mut |frame| {
+    demodulator.run(ring, written, demod_counters, &mut |frame| {
         heard = true;
         count(&queue_counters.offered);
         match queue.enqueue(frame) {

@@ -17,7 +17,6 @@
 #![no_main]
 #![forbid(unsafe_code)]
 
-mod air;
 mod confirm;
 mod console;
 mod core1;
@@ -26,15 +25,12 @@ mod receiver;
 mod reports;
 mod stats;
 
-use air::Air;
 use boot_contract::hand_over::{Cause, HandOver};
 use confirm::{Confirm, Due};
 use console::Console;
 use core::sync::atomic::Ordering;
 use core1::{Context, QUEUE_SLOTS, QueueCounters};
-use demod::{
-    ArrivalRing, Calibration, Counters, Demodulator, LevelRing, RawFrame, Rings, SampleRing,
-};
+use demod::{Counters, Demodulator, RawFrame, SampleRing};
 use drivers::led::Led;
 use drivers::pulse_capture::{CaptureCounters, PulseCapture};
 use drivers::trigger_level::{self, TriggerLevel};
@@ -56,8 +52,6 @@ const BEAT_US: u64 = 50_000;
 const _: () = assert!(TRIGGER_LEVEL_PERIOD == trigger_level::PERIOD);
 
 static RING: SampleRing = SampleRing::new();
-static ARRIVAL_RING: ArrivalRing = ArrivalRing::new();
-static LEVEL_RING: LevelRing = LevelRing::new();
 static QUEUE: TakeOnce<Queue<RawFrame, QUEUE_SLOTS>> = TakeOnce::new(Queue::new());
 static CORE1: TakeOnce<Option<Context>> = TakeOnce::new(None);
 static TRACKER: TakeOnce<Tracker<AIRCRAFT>> = TakeOnce::new(Tracker::new());
@@ -88,30 +82,18 @@ fn start() -> Option<core::convert::Infallible> {
     parts.watchdog.start(WATCHDOG_US);
     let mut led = Led::new(parts.led);
     // A PWM that cannot be set is not a thing on this chip: the error type is empty.
-    let trigger_level = TriggerLevel::new(parts.trigger_level).ok()?;
+    let _trigger_level = TriggerLevel::new(parts.trigger_level).ok()?;
     let console = parts.usb.attach()?;
 
     let (producer, consumer) = QUEUE.take()?.split();
     let capture_start_us = timer::now_us();
-    let capture = PulseCapture::start(
-        parts.sampler,
-        &mut parts.converter,
-        parts.dma,
-        &RING.words,
-        &ARRIVAL_RING.words,
-        &LEVEL_RING.words,
-        &SHARED.capture,
-    )
-    .ok()?;
+    let capture =
+        PulseCapture::start(parts.sampler, parts.dma, &RING.words, &SHARED.capture).ok()?;
     let context = CORE1.take()?;
     *context = Some(Context {
         capture,
-        rings: Rings {
-            samples: &RING,
-            arrival: &ARRIVAL_RING,
-            level: &LEVEL_RING,
-        },
-        demodulator: Demodulator::new(Calibration::ADSBEE_1090),
+        ring: &RING,
+        demodulator: Demodulator::new(),
         demod_counters: &SHARED.demod,
         queue: producer,
         queue_counters: &SHARED.queue,
@@ -137,7 +119,6 @@ fn start() -> Option<core::convert::Infallible> {
         last: (0, 0),
         reboot: None,
         confirm: Confirm::new(parts.flash),
-        air: Air::new(parts.converter, trigger_level, &RING, &LEVEL_RING),
     };
     let mut input = Console::new();
     let mut next_beat_us = timer::now_us() + BEAT_US;
@@ -157,7 +138,6 @@ fn start() -> Option<core::convert::Infallible> {
         let now_us = timer::now_us();
         if now_us >= next_beat_us {
             led.beat();
-            receiver.look();
             next_beat_us = next_beat(now_us, capture_start_us);
         }
         let blocks = SHARED.capture.blocks.load(Ordering::Relaxed);

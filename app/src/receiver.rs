@@ -8,7 +8,6 @@
 //! ```
 //! Time here is milliseconds of uptime, counted from the first sample, which is the zero of the frames' ticks too.
 
-use crate::air::Air;
 use crate::confirm::Confirm;
 use crate::console::{self, Console};
 use crate::core1::QueueCounters;
@@ -17,7 +16,6 @@ use crate::reports::Reports;
 use crate::stats::{DecodeCounters, Line, Stats};
 use boot_contract::hand_over::{Cause, HandOver};
 use core::fmt;
-use core::sync::atomic::Ordering;
 use demod::RawFrame;
 use drivers::pulse_capture::CaptureCounters;
 use hal::{timer, uart::CommsUart, usb::UsbConsole, watchdog};
@@ -68,7 +66,6 @@ pub struct Receiver {
     /// When to restart, microseconds of the timer, and what the bootloader is told.
     pub reboot: Option<(u64, HandOver)>,
     pub confirm: Confirm,
-    pub air: Air,
 }
 
 impl Receiver {
@@ -91,30 +88,17 @@ impl Receiver {
             heard();
             let message = Message::decode(&raw_frame.frame);
             self.decode.count(message.parity);
-            let quality_cdb = match (raw_frame.level, self.air.floor_cdbm()) {
-                (Some(level), Some(floor)) => Some(level.saturating_sub(floor).max(0)),
-                _ => None,
-            };
             let heard = Heard {
                 at_ms: raw_frame.arrival / TICKS_PER_MS,
                 level_cdbm: raw_frame.level,
-                quality_cdb,
+                quality_cdb: None,
                 is_repaired: raw_frame.repaired() != 0,
             };
             self.tracker.on_frame(&raw_frame.frame, &message, heard);
-            self.console_reports
-                .frame(&mut self.console, &raw_frame, quality_cdb);
-            self.comms_reports
-                .frame(&mut self.comms, &raw_frame, quality_cdb);
+            self.console_reports.frame(&mut self.console, &raw_frame);
+            self.comms_reports.frame(&mut self.comms, &raw_frame);
         }
         self.queue.ready()
-    }
-
-    /// A look at the air: noise floor and trigger level.
-    pub fn look(&mut self) {
-        let words = self.shared.capture.words.load(Ordering::Relaxed);
-        let frames = self.shared.queue.offered.load(Ordering::Relaxed);
-        self.air.look(words, frames);
     }
 
     /// Begins a second when it is time; goes on with the bursts. Returns whether there is more to send at once.
@@ -197,9 +181,6 @@ impl Receiver {
             confirmed: self.confirm.is_confirmed(),
             capture: &self.shared.capture,
             demod: &self.shared.demod,
-            air: self.air.seen,
-            floor_cdbm: self.air.floor_cdbm(),
-            trigger_mv: self.air.levels_mv(),
             queue: &self.shared.queue,
             queue_waiting: self.queue.len(),
             decode: &self.decode,

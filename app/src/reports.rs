@@ -46,12 +46,7 @@ impl Reports {
     }
 
     /// A frame was accepted: its bits as received.
-    pub fn frame<O: Outlet>(
-        &mut self,
-        port: &mut Port<O>,
-        raw_frame: &RawFrame,
-        quality_cdb: Option<i16>,
-    ) {
+    pub fn frame<O: Outlet>(&mut self, port: &mut Port<O>, raw_frame: &RawFrame) {
         let mut out = [0; if raw::MAX_HEX > beast::MAX_MESSAGE {
             raw::MAX_HEX
         } else {
@@ -60,17 +55,9 @@ impl Reports {
         let made = match self.protocol {
             Protocol::None | Protocol::Csbee => return,
             Protocol::Beast => {
-                // To the nearest tick.
-                let arrival = raw_frame.arrival + u64::from(raw_frame.arrival_parts >> 7);
-                let level = raw_frame.level.map(beast::level_byte);
-                beast::frame(&raw_frame.received(), arrival, level, &mut out)
+                beast::frame(&raw_frame.received(), raw_frame.arrival, None, &mut out)
             }
-            Protocol::Raw => raw::hex(
-                &raw_frame.received(),
-                raw_frame.level,
-                quality_cdb,
-                &mut out,
-            ),
+            Protocol::Raw => raw::hex(&raw_frame.received(), &mut out),
         };
         send(port, &out, made);
     }

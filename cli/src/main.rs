@@ -9,7 +9,6 @@ mod device;
 mod hardware;
 mod instruments;
 mod json;
-mod levels;
 mod live;
 mod output;
 mod ports;

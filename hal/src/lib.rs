@@ -6,9 +6,8 @@
 //! |---|---|---|
 //! | [`parts`] | everything, brought up once, in order | RESETS, XOSC, PLL_SYS, PLL_USB, CLOCKS, WATCHDOG.TICK |
 //! | [`board`] | pins by net name | IO_BANK0, PADS_BANK0 |
-//! | [`pio_sampler`] | PULSES at 8 Msps and at 120/7 Msps, 32 samples a word | PIO0 SM0, SM1 |
-//! | [`level_converter`] | RSSI and trigger levels | ADC |
-//! | [`dma_ring`] | rings that DMA fills for ever | DMA channels 0 to 5, INTS1 |
+//! | [`pio_sampler`] | PULSES at 8 Msps, 32 samples a word | PIO0 SM0 |
+//! | [`dma_ring`] | a ring that DMA fills for ever | DMA channels 0 and 1, INTS1 |
 //! | [`timer`] | microseconds, one alarm | TIMER |
 //! | [`uart`] | COMMS_UART, both ways by interrupt | UART1 |
 //! | [`usb`] | the console's CDC ACM port | USBCTRL |
@@ -28,7 +27,6 @@ pub mod byte_ring;
 pub mod core1;
 pub mod dma_ring;
 pub mod flash;
-pub mod level_converter;
 pub mod parts;
 pub mod pio_sampler;
 pub mod sleep;

@@ -9,7 +9,6 @@ use crate::board::adsbee_1090::{self, PULSES_GPIO, Pins, TriggerLevelSlice};
 use crate::core1::Core1;
 use crate::dma_ring::DmaChannels;
 use crate::flash::Flash;
-use crate::level_converter::LevelConverter;
 use crate::pio_sampler::PioSampler;
 use crate::uart::CommsUart;
 use crate::usb::UsbConsole;
@@ -73,9 +72,7 @@ pub struct Parts {
     pub trigger_level: TriggerLevelPwm,
     /// PULSES sampler, stopped.
     pub sampler: PioSampler,
-    /// The converter, stopped.
-    pub converter: LevelConverter,
-    /// DMA channels for the rings.
+    /// Two DMA channels for its ring.
     pub dma: DmaChannels,
     /// COMMS_UART, running at [`COMMS_BAUD`].
     pub comms_uart: CommsUart,
@@ -125,8 +122,6 @@ impl Parts {
                 .clear_bit()
                 .pio0()
                 .clear_bit()
-                .adc()
-                .clear_bit()
                 .uart1()
                 .clear_bit()
         });
@@ -135,7 +130,6 @@ impl Parts {
             done.timer().bit_is_clear()
                 || done.dma().bit_is_clear()
                 || done.pio0().bit_is_clear()
-                || done.adc().bit_is_clear()
                 || done.uart1().bit_is_clear()
         } {}
 
@@ -161,7 +155,6 @@ impl Parts {
             boot_config: pins.boot_config,
             trigger_level: trigger_level_pwm(slices.pwm4, TRIGGER_LEVEL_PERIOD),
             sampler: PioSampler::new(p.PIO0, PULSES_GPIO),
-            converter: LevelConverter::new(p.ADC),
             dma: DmaChannels { dma: p.DMA },
             comms_uart: CommsUart::new(p.UART1, COMMS_BAUD),
             usb: UsbParts { bus },

@@ -17,16 +17,14 @@
 //! | 21-24 | free | nobody | – |
 //! | 25 | TRIGGER_LEVEL, PWM through an RC | `drivers::trigger_level` | PWM4 B |
 //! | 26 | GNSS_PPS | nobody yet | – |
-//! | 27, 28 | TRIGGER_LEVEL_ADC (ADC1), RSSI_ADC (ADC2) | `level_converter` | analog, nothing digital |
+//! | 27, 28 | TRIGGER_LEVEL_ADC (ADC1), RSSI_ADC (ADC2) | nobody yet | – |
 //!
 //! Source: the hardware facts in the project's ADSBee reference notes. Pins that nobody uses stay as reset leaves them.
 
-use rp2040_hal::gpio::bank0::{
-    Gpio4, Gpio5, Gpio15, Gpio18, Gpio19, Gpio20, Gpio25, Gpio27, Gpio28,
-};
+use rp2040_hal::gpio::bank0::{Gpio4, Gpio5, Gpio15, Gpio18, Gpio19, Gpio20, Gpio25};
 use rp2040_hal::gpio::{
-    self, FunctionNull, FunctionPio0, FunctionPwm, FunctionSioInput, FunctionSioOutput,
-    FunctionUart, Pin, PinState, PullDown, PullNone, PullUp,
+    self, FunctionPio0, FunctionPwm, FunctionSioInput, FunctionSioOutput, FunctionUart, Pin,
+    PinState, PullDown, PullNone, PullUp,
 };
 
 /// GPIO of PULSES: the PIO program's input base.
@@ -57,11 +55,6 @@ pub struct Pins {
     pub boot_config: BootConfig,
     /// Trigger level PWM.
     pub trigger_level: TriggerLevel,
-    /// TRIGGER_LEVEL_ADC and RSSI_ADC.
-    _analog: (
-        Pin<Gpio27, FunctionNull, PullNone>,
-        Pin<Gpio28, FunctionNull, PullNone>,
-    ),
 }
 
 impl Pins {
@@ -77,7 +70,6 @@ impl Pins {
                 .gpio18
                 .into_pull_type()
                 .into_push_pull_output_in_state(PinState::High),
-            _analog: (pins.gpio27.reconfigure(), pins.gpio28.reconfigure()),
             pulses: pins.gpio19.reconfigure(),
             boot_config: pins.gpio20.reconfigure(),
             trigger_level: pins.gpio25.reconfigure(),

@@ -12,15 +12,13 @@
 //!
 //! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 160 µs.
 
-use crate::arrival::{self, Arrival, COARSE_SIGMA};
 use crate::counters::{Counters, add};
 use crate::gate::{Gate, Pairs, REACH, STEER_WORDS, STEP_WORDS};
 use crate::headless::{self, STRONG, WAIT_WORDS};
 use crate::heard::Heard;
-use crate::level::{self, Calibration};
 use crate::preamble::{self, mismatches, ones};
 use crate::repair::Flips;
-use crate::ring::{RING_WORDS, Rings, SampleRing};
+use crate::ring::{RING_WORDS, SampleRing};
 use crate::trial::{Outcome, Tried, from_sample, received, try_phases};
 use crate::{SAMPLES_PER_WORD, TICKS_PER_SAMPLE};
 use mode_s::Frame;
@@ -40,9 +38,6 @@ const PREAMBLE_SAMPLES: u32 = 64;
 const BIT_SAMPLES: u32 = 8;
 /// Samples before an accepted frame's end at which another may start: 12 µs, a preamble and four bits.
 const TAIL_SAMPLES: u64 = 96;
-/// Ticks after which a frame's conversions, and its samples of the second sampler, may be overwritten: the rings hold 558 000 and 917 000.
-const MOST_LEVEL_AGE: u64 = 530_000;
-const MOST_ARRIVAL_AGE: u64 = 890_000;
 /// Words before strong bits began in which their preamble may stand, tried.
 const TRIED_WITHIN: u32 = 8;
 
@@ -53,13 +48,9 @@ pub struct RawFrame {
     pub frame: Frame,
     /// Which bits were repaired: [`RawFrame::received`] takes them back.
     pub flips: Flips,
-    /// Tick (120 MHz) of the leading edge of the preamble's first pulse, from the first capture sample, rounded down.
+    /// Tick (120 MHz) of the leading edge of the preamble's first pulse, from the first capture sample.
     pub arrival: u64,
-    /// The rest of the arrival, in 1/256 of a tick.
-    pub arrival_parts: u8,
-    /// The arrival's standard uncertainty, in 1/256 of a tick.
-    pub arrival_sigma: u16,
-    /// Signal level at the antenna in a hundredth of a dBm.
+    /// Signal level in a hundredth of a dBm; not measured so far.
     pub level: Option<i16>,
 }
 
@@ -94,14 +85,11 @@ pub struct Demodulator {
     strong_since: u32,
     strong_last: u32,
     tried_last: u32,
-    arrivals: arrival::Anchor,
-    levels: level::Anchor,
-    calibration: Calibration,
 }
 
 impl Demodulator {
-    /// Nothing heard, at the start of capture, on this board.
-    pub const fn new(calibration: Calibration) -> Self {
+    /// Nothing heard, at the start of capture.
+    pub const fn new() -> Self {
         Self {
             next: 0,
             free_from: 0,
@@ -110,34 +98,24 @@ impl Demodulator {
             strong_since: 0,
             strong_last: u32::MAX,
             tried_last: u32::MAX,
-            arrivals: arrival::Anchor::new(),
-            levels: level::Anchor::new(),
-            calibration,
         }
     }
 
-    /// Works off the rings up to `written` words since the start of capture, and gives each accepted frame to `sink`. `newest` tells how many words there are by
-    /// then: a long backlog takes its time, in which the smaller rings go on.
+    /// Works off the ring up to `written` words since the start of capture, and gives each accepted frame to `sink`.
     #[inline]
     pub fn run(
         &mut self,
-        rings: Rings,
+        ring: &SampleRing,
         written: u64,
         counters: &Counters,
-        newest: &mut impl FnMut() -> u64,
         sink: &mut impl FnMut(RawFrame),
     ) {
         if written.saturating_sub(self.next) > MOST_BEHIND {
             self.skip(written, counters);
         }
         self.heard.at_word(self.next);
-        let now = ticks(self.next * u64::from(SAMPLES_PER_WORD));
-        self.arrivals.follow(now);
-        self.levels.follow(2 * now);
-        let ring = rings.samples;
         while let Some(pairs) = self.find(ring, written, counters) {
-            if let Some(mut frame) = self.examine(ring, pairs, counters) {
-                self.measure(rings, newest(), &mut frame);
+            if let Some(frame) = self.examine(ring, pairs, counters) {
                 sink(frame);
             }
         }
@@ -322,44 +300,14 @@ impl Demodulator {
             frame,
             flips: tried.flips,
             arrival: ticks(first),
-            arrival_parts: 0,
-            arrival_sigma: COARSE_SIGMA,
             level: None,
         })
-    }
-
-    /// Adds what the other two rings know of a frame, unless they have been overwritten since.
-    #[inline(never)]
-    fn measure(&self, rings: Rings, written: u64, frame: &mut RawFrame) {
-        let age = ticks(written * u64::from(SAMPLES_PER_WORD)).saturating_sub(frame.arrival);
-        if age < MOST_LEVEL_AGE {
-            frame.level = level::measure(
-                rings.level,
-                &self.levels,
-                self.calibration,
-                frame.arrival,
-                frame.frame.bytes(),
-            );
-        }
-        if age < MOST_ARRIVAL_AGE {
-            let Arrival {
-                ticks,
-                parts,
-                sigma,
-            } = arrival::measure(
-                rings.arrival,
-                &self.arrivals,
-                frame.arrival,
-                frame.frame.bytes(),
-            );
-            (frame.arrival, frame.arrival_parts, frame.arrival_sigma) = (ticks, parts, sigma);
-        }
     }
 }
 
 impl Default for Demodulator {
     fn default() -> Self {
-        Self::new(Calibration::ADSBEE_1090)
+        Self::new()
     }
 }
 

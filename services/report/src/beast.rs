@@ -24,33 +24,6 @@ pub const STAMP_AFTER_ARRIVAL_TICKS: u64 = (8 + 56) * 120;
 /// Level byte of a frame whose level is unknown.
 pub const LEVEL_UNKNOWN: u8 = 0xFF;
 
-/// Full scale of the level byte, dBm at the antenna: where the detector of the boards ends, 0 dBm at its input behind 44 dB of gain.
-const FULL_SCALE_DBM: i32 = -44;
-
-/// 254 times the amplitude share of each whole dB under full scale.
-static SHARES: [u8; 48] = shares();
-
-const fn shares() -> [u8; 48] {
-    let mut shares = [1; 48];
-    let mut share: u64 = 254_000_000;
-    let mut db = 0;
-    while db < shares.len() {
-        let rounded = (share + 500_000) / 1_000_000;
-        shares[db] = if rounded < 1 { 1 } else { rounded as u8 };
-        // 10^(-1/20) = 0.891 251
-        share = share * 891_251 / 1_000_000;
-        db += 1;
-    }
-    shares
-}
-
-/// The level byte of a level in 1/100 dBm: 255 times the amplitude's share of full scale, 1 to 254.
-pub fn level_byte(level_cdbm: i16) -> u8 {
-    let under = FULL_SCALE_DBM - crate::raw::whole(level_cdbm);
-    let under = usize::try_from(under).unwrap_or(0);
-    SHARES.get(under).copied().unwrap_or(1)
-}
-
 const ESCAPE: u8 = 0x1A;
 
 /// One frame that arrived at `arrival` (ticks of 120 MHz), with its level (1-254) where known.
@@ -107,15 +80,6 @@ mod tests {
         assert_eq!(out[..2], [0x1A, b'3']);
         assert_eq!(out[2..8], 12_000_768u64.to_be_bytes()[2..]);
         assert_eq!(out[8], LEVEL_UNKNOWN);
-    }
-
-    #[test]
-    fn a_level_is_its_amplitude_s_share() {
-        assert_eq!(level_byte(-4_000), 254);
-        assert_eq!(level_byte(-4_400), 254);
-        assert_eq!(level_byte(-5_000), 127);
-        assert_eq!(level_byte(-6_400), 25);
-        assert_eq!(level_byte(-10_200), 1);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //!   HEX    *8D4CA7E858B9838206BA422BBD7B;(SIGS,SIGQ,TS1s,TS24h)\r\n     unknown fields empty: (,,,)
 //!   HEXd   *8D4CA7E858B9838206BA422BBD7B;\r\n                           what every AVR reader understands
 //! ```
-//! SIGS is the level in whole dBm, SIGQ what it has over the noise floor in whole dB. The two stamps need PPS and stay empty.
+//! SIGS, SIGQ and the two stamps are not measured yet and stay empty.
 
 use crate::Full;
 use crate::text::Text;
@@ -13,28 +13,9 @@ use mode_s::Frame;
 /// A slice that holds any HEX line.
 pub const MAX_HEX: usize = 80;
 
-/// One frame as a HEX line; level in 1/100 dBm, quality in 1/100 dB.
-pub fn hex(
-    frame: &Frame,
-    level_cdbm: Option<i16>,
-    quality_cdb: Option<i16>,
-    out: &mut [u8],
-) -> Result<usize, Full> {
-    let begun = line(frame, b"(", out)?;
-    let mut text = Text::new(out.get_mut(begun..).ok_or(Full)?);
-    for value in [level_cdbm, quality_cdb] {
-        if let Some(value) = value {
-            text.decimal(whole(value))?;
-        }
-        text.byte(b',')?;
-    }
-    text.bytes(b",)\r\n")?;
-    Ok(begun + text.len())
-}
-
-/// The nearest whole number of hundredths.
-pub fn whole(hundredths: i16) -> i32 {
-    (i32::from(hundredths) + 50).div_euclid(100)
+/// One frame as a HEX line.
+pub fn hex(frame: &Frame, out: &mut [u8]) -> Result<usize, Full> {
+    line(frame, b"(,,,)\r\n", out)
 }
 
 /// One frame as a HEXd (AVR) line.
@@ -61,10 +42,8 @@ mod tests {
     fn both_forms() {
         let frame = Frame::from_bytes(&[0x5D, 0x4B, 0x18, 0xFF, 0xFC, 0x71, 0x0B]).unwrap();
         let mut out = [0; MAX_HEX];
-        let length = hex(&frame, None, None, &mut out).unwrap();
+        let length = hex(&frame, &mut out).unwrap();
         assert_eq!(&out[..length], b"*5D4B18FFFC710B;(,,,)\r\n");
-        let length = hex(&frame, Some(-7_151), Some(1_349), &mut out).unwrap();
-        assert_eq!(&out[..length], b"*5D4B18FFFC710B;(-72,13,,)\r\n");
         let length = hexd(&frame, &mut out).unwrap();
         assert_eq!(&out[..length], b"*5D4B18FFFC710B;\r\n");
         assert_eq!(hexd(&frame, &mut out[..17]), Err(Full));

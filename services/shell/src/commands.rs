@@ -6,16 +6,11 @@
 //! | `STATS` | | counters of every stage | |
 //! | `PROTOCOL` | | protocol of each interface | `<iface>,<protocol>` |
 //! | `BAUDRATE`, alias `BAUD_RATE` | | actual rates | `<iface>,<rate>` |
-//! | `TL_SET`, alias `MTLSET` | | the levels set | `<lo>,<hi>` in mV, or `LEARN` |
-//! | `TL_READ`, alias `MTLREAD` | the levels as the ADC reads them back | the same | |
 //! | `REBOOT` | restarts the device | | |
 
 use crate::command::{Command, Kind, arguments};
 use crate::ports::{HIGHEST_BAUD, LOWEST_BAUD, Port, Protocol, Uart};
 use crate::refusal::Refusal;
-
-/// Highest trigger level: the PWM's full scale, mV.
-pub const HIGHEST_TRIGGER_MV: u16 = 3300;
 
 /// What a line asks for. `None` in a setting is a blank argument: leave it as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,19 +37,6 @@ pub enum Request {
         /// Bits a second, within [`LOWEST_BAUD`] and [`HIGHEST_BAUD`].
         baud: Option<u32>,
     },
-    /// `AT+TL_SET?`
-    QueryTriggerLevel,
-    /// `AT+TL_SET=<lo>,<hi>`, mV.
-    SetTriggerLevel {
-        /// Lower level; the automatic level's floor where the board has one level only.
-        low_mv: Option<u16>,
-        /// Upper level: the threshold.
-        high_mv: Option<u16>,
-    },
-    /// `AT+TL_SET=LEARN`
-    LearnTriggerLevel,
-    /// `AT+TL_READ?`
-    ReadTriggerLevel,
     /// `AT+REBOOT`
     Reboot,
     /// `AT+REBOOT_BOOTLOADER`
@@ -69,7 +51,7 @@ struct Row {
     request: fn(Kind<'_>) -> Result<Request, Refusal>,
 }
 
-static TABLE: [Row; 8] = [
+static TABLE: [Row; 6] = [
     Row {
         name: "HELP",
         alias: None,
@@ -93,21 +75,6 @@ static TABLE: [Row; 8] = [
         alias: Some("BAUD_RATE"),
         help: "AT+BAUDRATE=<COMMS_UART|GNSS_UART>,<9600-3000000> sets a rate; AT+BAUDRATE? tells the actual ones.",
         request: baud_rate,
-    },
-    Row {
-        name: "TL_SET",
-        alias: Some("MTLSET"),
-        help: "AT+TL_SET=<lo>,<hi> sets the trigger levels, 0-3300 mV; AT+TL_SET=LEARN steers them by the noise; AT+TL_SET? tells them.",
-        request: trigger_level,
-    },
-    Row {
-        name: "TL_READ",
-        alias: Some("MTLREAD"),
-        help: "AT+TL_READ? reads the trigger level back, mV.",
-        request: |kind| match kind {
-            Kind::Set(_) => Err(Refusal::NoSet),
-            Kind::Bare | Kind::Query => Ok(Request::ReadTriggerLevel),
-        },
     },
     Row {
         name: "REBOOT",
@@ -182,37 +149,12 @@ fn baud_rate(kind: Kind<'_>) -> Result<Request, Refusal> {
     })
 }
 
-fn trigger_level(kind: Kind<'_>) -> Result<Request, Refusal> {
-    let Kind::Set(text) = kind else {
-        return query(kind, Request::QueryTriggerLevel);
-    };
-    if text == "LEARN" {
-        return Ok(Request::LearnTriggerLevel);
-    }
-    let [low, high] = arguments(text)?;
-    Ok(Request::SetTriggerLevel {
-        low_mv: low.map(millivolts).transpose()?,
-        high_mv: high.map(millivolts).transpose()?,
-    })
-}
-
-fn millivolts(digits: &str) -> Result<u16, Refusal> {
-    match u16::try_from(number(digits)?) {
-        Ok(mv) if mv <= HIGHEST_TRIGGER_MV => Ok(mv),
-        _ => Err(Refusal::TriggerLevelRange),
-    }
-}
-
-fn number(digits: &str) -> Result<u32, Refusal> {
+fn rate(digits: &str) -> Result<u32, Refusal> {
     if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
         return Err(Refusal::NotANumber);
     }
     // More digits than a u32 holds are a number all the same: out of range.
-    Ok(digits.parse().unwrap_or(u32::MAX))
-}
-
-fn rate(digits: &str) -> Result<u32, Refusal> {
-    let rate = number(digits)?;
+    let rate = digits.parse().unwrap_or(u32::MAX);
     if (LOWEST_BAUD..=HIGHEST_BAUD).contains(&rate) {
         Ok(rate)
     } else {

@@ -25,17 +25,6 @@ fn every_request() {
         ("AT+BAUDRATE?", Request::QueryBaudRate),
         ("AT+BAUD_RATE?", Request::QueryBaudRate),
         ("AT+REBOOT", Request::Reboot),
-        ("AT+TL_SET?", Request::QueryTriggerLevel),
-        ("AT+TL_SET=LEARN", Request::LearnTriggerLevel),
-        ("AT+MTLREAD", Request::ReadTriggerLevel),
-        ("AT+TL_READ?", Request::ReadTriggerLevel),
-        (
-            "AT+MTLSET=,1290",
-            Request::SetTriggerLevel {
-                low_mv: None,
-                high_mv: Some(1290),
-            },
-        ),
         (
             "AT+PROTOCOL=CONSOLE,NONE",
             Request::SetProtocol {

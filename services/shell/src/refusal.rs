@@ -1,6 +1,5 @@
 //! Why a line was refused. `Display` writes the reply without its line end: `ERROR <text>`.
 
-use crate::commands::HIGHEST_TRIGGER_MV;
 use crate::ports::{HIGHEST_BAUD, LOWEST_BAUD, Protocol};
 use core::fmt;
 
@@ -29,8 +28,6 @@ pub enum Refusal {
     NotANumber,
     /// A baud rate outside the range.
     BaudRateRange,
-    /// A trigger level above the PWM's full scale.
-    TriggerLevelRange,
 }
 
 impl fmt::Display for Refusal {
@@ -54,9 +51,6 @@ impl fmt::Display for Refusal {
             Refusal::NotANumber => f.write_str("not a whole number"),
             Refusal::BaudRateRange => {
                 write!(f, "baud rate must be {LOWEST_BAUD} to {HIGHEST_BAUD}")
-            }
-            Refusal::TriggerLevelRange => {
-                write!(f, "trigger level must be 0 to {HIGHEST_TRIGGER_MV} mV")
             }
         }
     }

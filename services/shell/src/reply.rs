@@ -89,8 +89,6 @@ mod tests {
                 "STATS",
                 "PROTOCOL",
                 "BAUDRATE",
-                "TL_SET",
-                "TL_READ",
                 "REBOOT",
                 "REBOOT_BOOTLOADER"
             ]
