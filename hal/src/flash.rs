@@ -7,7 +7,9 @@
 //! erase takes 45 ms (W25Q16JV, 9.6: typical; 400 ms at most), a page 0.4 ms. The watchdog is fed before each, so that a long range does not
 //! end in a reset.
 //!
-//! Source: RP2040 datasheet 2.8.3.1.3 (flash access functions) and their order there.
+//! The part's unique id is read the same way, once, when the board comes up: 64 bits set at the factory (W25Q16JV, 8.2.32), the serial number.
+//!
+//! Source: RP2040 datasheet 2.8.3.1.3 (flash access functions) and their order there; 4.10.13 (SSI registers), 2.19.6.2 (OUTOVER).
 
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
@@ -22,6 +24,16 @@ pub const PAGE: u32 = 256;
 const SECTOR_ERASE: u8 = 0x20;
 /// Words of boot2.
 const BOOT2_WORDS: usize = 64;
+/// Command of the part for its unique id; four bytes that mean nothing follow, then the id (W25Q16JV, 8.2.32).
+const READ_UNIQUE_ID: u8 = 0x4B;
+/// Bytes in front of the id: the command and the four.
+const UNIQUE_ID_AT: usize = 5;
+/// Bytes of the id.
+pub const UNIQUE_ID: usize = 8;
+/// OUTOVER of the chip select's pin: as the SSI drives it, low, high.
+const SELECT_BY_SSI: u8 = 0;
+const SELECT_LOW: u8 = 2;
+const SELECT_HIGH: u8 = 3;
 
 /// Why a call was refused: it lies outside the flash, or not on its boundaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,9 +114,17 @@ impl NorFlash for Flash {
     }
 }
 
+/// The part's unique id. Takes some 30 us, in which flash cannot be read: core 1 must not have been started from flash yet.
+pub(crate) fn unique_id() -> [u8; UNIQUE_ID] {
+    let mut id = [0; UNIQUE_ID];
+    perform(Operation::UniqueId(&mut id));
+    id
+}
+
 enum Operation<'a> {
     Erase(u32),
     Program(u32, &'a [u8; PAGE as usize]),
+    UniqueId(&'a mut [u8; UNIQUE_ID]),
 }
 
 /// The ROM's functions, looked up while the flash can still be read.
@@ -116,7 +136,7 @@ struct Rom {
     flush: unsafe extern "C" fn(),
 }
 
-fn perform(operation: Operation) {
+fn perform(mut operation: Operation) {
     let rom = Rom {
         connect: rom_data::connect_internal_flash::ptr(),
         exit_xip: rom_data::flash_exit_xip::ptr(),
@@ -140,14 +160,14 @@ fn perform(operation: Operation) {
         };
         // SAFETY: interrupts are masked; the other core and DMA keep away from flash (module doc); `boot2` is this device's own,
         // copied to SRAM; the range was checked by the caller.
-        unsafe { without_xip(&rom, &operation, &boot2) };
+        unsafe { without_xip(&rom, &mut operation, &boot2) };
     });
 }
 
 /// The part during which the flash cannot be read. In SRAM with all it needs: `.data` is copied there by the start-up code.
 #[unsafe(link_section = ".data.without_xip")]
 #[inline(never)]
-unsafe fn without_xip(rom: &Rom, operation: &Operation, boot2: &[u32; BOOT2_WORDS]) {
+unsafe fn without_xip(rom: &Rom, operation: &mut Operation, boot2: &[u32; BOOT2_WORDS]) {
     // SAFETY: the caller's promise; the ROM's functions keep to SRAM and to their own registers. boot2 returns to its caller when the link
     // register is not zero.
     unsafe {
@@ -157,9 +177,38 @@ unsafe fn without_xip(rom: &Rom, operation: &Operation, boot2: &[u32; BOOT2_WORD
             (rom.program)(*at, page.as_ptr(), PAGE as usize);
         } else if let Operation::Erase(at) = operation {
             (rom.erase)(*at, SECTOR as usize, SECTOR, SECTOR_ERASE);
+        } else if let Operation::UniqueId(id) = operation {
+            read_unique_id(id);
         }
         (rom.flush)();
         let enter: unsafe extern "C" fn() = core::mem::transmute((boot2.as_ptr() as usize) | 1);
         enter();
     }
+}
+
+/// Asks the part for its id, byte by byte. The ROM has left the SSI with frames of eight bits, both ways.
+#[inline(always)]
+fn read_unique_id(id: &mut [u8; UNIQUE_ID]) {
+    // SAFETY: called with the flash out of XIP and nobody else near it: the SSI and the chip select are this function's.
+    let (ssi, pins) = unsafe { (&*pac::XIP_SSI::ptr(), &*pac::IO_QSPI::ptr()) };
+    let select = |override_: u8| {
+        pins.gpio_qspiss()
+            .gpio_ctrl()
+            .modify(|_, w| w.outover().bits(override_));
+    };
+    select(SELECT_LOW);
+    let mut at = 0;
+    while at < UNIQUE_ID_AT + UNIQUE_ID {
+        let out = if at == 0 { READ_UNIQUE_ID } else { 0 };
+        // SAFETY: the low eight bits are the frame.
+        ssi.dr0().write(|w| unsafe { w.bits(u32::from(out)) });
+        while ssi.sr().read().rfne().bit_is_clear() {}
+        let byte = ssi.dr0().read().bits() as u8;
+        if let Some(place) = at.checked_sub(UNIQUE_ID_AT).and_then(|n| id.get_mut(n)) {
+            *place = byte;
+        }
+        at += 1;
+    }
+    select(SELECT_HIGH);
+    select(SELECT_BY_SSI);
 }

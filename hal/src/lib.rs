@@ -15,6 +15,7 @@
 //! | [`core1`] | starting the second core; waking the first | PSM, SIO FIFO |
 //! | [`sleep`] | WFI without a lost wake-up | NVIC |
 //! | [`boot`] | flash as bytes, jump into an image | XIP, VTOR |
+//! | [`flash`] | erase, program, the part's unique id | XIP_SSI and IO_QSPI, beside the ROM |
 //! | [`byte_ring`], [`take_once`] | whole messages or nothing; statics handed out once | – |
 //!
 //! Core 1 runs from SRAM alone. What it calls here is `dma_ring`, `timer`, `core1` and `pio_sampler`, which `linker/app.x`

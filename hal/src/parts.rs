@@ -8,7 +8,7 @@
 use crate::board::adsbee_1090::{self, PULSES_GPIO, Pins, TriggerLevelSlice};
 use crate::core1::Core1;
 use crate::dma_ring::DmaChannels;
-use crate::flash::Flash;
+use crate::flash::{self, Flash, UNIQUE_ID};
 use crate::pio_sampler::PioSampler;
 use crate::uart::CommsUart;
 use crate::usb::UsbConsole;
@@ -53,12 +53,13 @@ fn trigger_level_pwm(
 /// USB before the host sees it.
 pub struct UsbParts {
     bus: UsbBus,
+    unique_id: [u8; UNIQUE_ID],
 }
 
 impl UsbParts {
     /// Shows the device to the host.
     pub fn attach(self) -> Option<UsbConsole> {
-        UsbConsole::new(self.bus)
+        UsbConsole::new(self.bus, self.unique_id)
     }
 }
 
@@ -80,6 +81,8 @@ pub struct Parts {
     pub usb: UsbParts,
     /// The flash of the smallest board, 2 MiB.
     pub flash: Flash,
+    /// The flash part's unique id: the device's serial number.
+    pub unique_id: [u8; UNIQUE_ID],
     /// The watchdog, not started.
     pub watchdog: Watchdog,
     /// The second core, in its ROM.
@@ -133,6 +136,7 @@ impl Parts {
                 || done.uart1().bit_is_clear()
         } {}
 
+        let unique_id = flash::unique_id();
         let sio = Sio::new(p.SIO);
         let pins = Pins::new(gpio::Pins::new(
             p.IO_BANK0,
@@ -157,8 +161,9 @@ impl Parts {
             sampler: PioSampler::new(p.PIO0, PULSES_GPIO),
             dma: DmaChannels { dma: p.DMA },
             comms_uart: CommsUart::new(p.UART1, COMMS_BAUD),
-            usb: UsbParts { bus },
+            usb: UsbParts { bus, unique_id },
             flash: Flash::new(FLASH_BYTES),
+            unique_id,
             watchdog: Watchdog::new(watchdog),
             core1: Core1 {
                 psm: p.PSM,

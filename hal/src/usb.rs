@@ -7,10 +7,13 @@
 //! A host that goes away leaves an emptied ring: the next one starts with a whole message (but for at most one packet that was
 //! already in the controller). A packet of 64 bytes that ends the stream is followed by an empty one, so that the host delivers it.
 //!
-//! No serial number string yet: it will be the flash's unique id, and a made-up one would be worse than none. VID and PID are the
-//! shared test pair for CDC devices (V-USB's list), to be replaced before anything ships.
+//! Bootloader and app show the same identity, so that a host gives both the same name: manufacturer, product, and as serial number the flash's
+//! unique id in hexadecimal. Tools find a device by these strings: VID and PID are the pair that Raspberry Pi gives for any RP2040 that is a plain
+//! CDC serial port (docs/adr/0020).
 
 use crate::byte_ring::ByteRing;
+use crate::flash::UNIQUE_ID;
+use crate::take_once::TakeOnce;
 use rp2040_hal::usb::UsbBus;
 use usb_device::bus::UsbBusAllocator;
 use usb_device::device::{
@@ -23,7 +26,17 @@ pub const TX_BYTES: usize = 16_384;
 /// Bytes of a bulk packet (full speed's largest).
 pub const PACKET: usize = 64;
 
+/// Vendor and product number: "Pico SDK CDC UART (RP2040)" of <https://github.com/raspberrypi/usb-pid>, which asks devices with a standard
+/// class not to take a number of their own, but to tell themselves apart by their strings.
+const VID_PID: UsbVidPid = UsbVidPid(0x2E8A, 0x000A);
+/// What the host shows, and what tools look for.
+const MANUFACTURER: &str = "Squitter";
+const PRODUCT: &str = "Squitter 1090";
+/// Digits of the serial number: the flash's unique id.
+const SERIAL: usize = 2 * UNIQUE_ID;
+
 static TX: ByteRing<TX_BYTES> = ByteRing::new();
+static SERIAL_NUMBER: TakeOnce<[u8; SERIAL]> = TakeOnce::new([b'0'; SERIAL]);
 
 /// The port.
 pub struct UsbConsole {
@@ -35,14 +48,15 @@ pub struct UsbConsole {
 
 impl UsbConsole {
     /// Shows the device to the host. Called once; `None` the second time.
-    pub(crate) fn new(bus: UsbBus) -> Option<Self> {
+    pub(crate) fn new(bus: UsbBus, unique_id: [u8; UNIQUE_ID]) -> Option<Self> {
         let allocator =
             cortex_m::singleton!(: UsbBusAllocator<UsbBus> = UsbBusAllocator::new(bus))?;
         let class = CdcAcmClass::new(allocator, PACKET as u16);
         let strings = StringDescriptors::default()
-            .manufacturer("Squitter")
-            .product("Squitter 1090");
-        let device = UsbDeviceBuilder::new(allocator, UsbVidPid(0x16C0, 0x27DD))
+            .manufacturer(MANUFACTURER)
+            .product(PRODUCT)
+            .serial_number(hexadecimal(unique_id)?);
+        let device = UsbDeviceBuilder::new(allocator, VID_PID)
             .strings(&[strings])
             .ok()?
             .max_packet_size_0(64)
@@ -104,4 +118,15 @@ impl UsbConsole {
             Err(_) => false,
         }
     }
+}
+
+/// The id as the serial number's text, upper case. `None` the second time.
+fn hexadecimal(id: [u8; UNIQUE_ID]) -> Option<&'static str> {
+    const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
+    let text = SERIAL_NUMBER.take()?;
+    for (pair, byte) in text.chunks_exact_mut(2).zip(id) {
+        pair[0] = DIGITS[usize::from(byte >> 4)];
+        pair[1] = DIGITS[usize::from(byte & 0xF)];
+    }
+    core::str::from_utf8(text).ok()
 }

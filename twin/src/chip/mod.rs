@@ -35,6 +35,7 @@ pub mod trace;
 pub mod uart;
 mod usb;
 pub mod usb_host;
+mod usb_strings;
 mod watchdog;
 
 use bus::debug::Hit;

@@ -372,7 +372,12 @@ impl UsbHost {
             let bytes = std::mem::take(&mut self.buffer);
             match (kind, bytes.len()) {
                 (1, 8..=17) => self.packet0 = usize::from(bytes[7]).max(8),
-                (1, _) => {}
+                // Manufacturer, product, serial number, in US English, as far as there are any (USB 2.0, 9.6.1).
+                (1, _) => {
+                    for index in bytes.iter().skip(14).take(3).filter(|n| **n != 0) {
+                        self.request([0x80, 6, *index, 3, 0x09, 0x04, 255, 0], &[]);
+                    }
+                }
                 (2, 4..=9) => {
                     let total = u16::from_le_bytes([bytes[2], bytes[3]]).to_le_bytes();
                     self.request([0x80, 6, 0, 2, 0, 0, total[0], total[1]], &[]);
