@@ -55,21 +55,88 @@ fn a_miss_costs_the_serial_transfer_and_a_hit_nothing() {
     assert_eq!(chip.bus.read32(XIP_CTRL + 0x0c), 0, "cleared");
 }
 
-#[test]
-fn quad_reads_at_half_the_clock_cost_what_boot2_of_the_w25q080_makes_them_cost() {
+/// The SSI set up for quad reads without an instruction, as boot2 of the W25Q080 leaves it but for its divider of `divider`; the flash is told first if
+/// `told`.
+fn with_quad_reads(divider: u32, told: bool) -> Chip {
     let mut chip = with_flash(&LOAD);
-    // EBh in continuous mode: no instruction, 32 bits of address and mode, 4 wait cycles, four lines, divider 2.
+    let quad = 31 << 16 | 3 << 8 | 2 << 21;
+    let (address_and_mode, wait) = (8 << 2, 4 << 11);
+    if told {
+        // EBh on one line, address and mode A0h on four, then nobody takes the data.
+        for (offset, value) in [
+            (0x08, 0),
+            (0x00, quad),
+            (0xf4, wait | 2 << 8 | address_and_mode | 1),
+            (0x08, 1),
+            (0x60, 0xeb),
+            (0x60, 0xa0),
+        ] {
+            chip.bus.write32(SSI + offset, value);
+        }
+    }
     for (offset, value) in [
         (0x08, 0),
-        (0x14, 2),
-        (0x00, 31 << 16 | 3 << 8 | 2 << 21),
-        (0xf4, 0xa0 << 24 | 4 << 11 | 8 << 2 | 2),
+        (0x14, divider),
+        (0x00, quad),
+        (0xf4, 0xa0 << 24 | wait | address_and_mode | 2),
         (0x08, 1),
     ] {
         chip.bus.write32(SSI + offset, value);
     }
-    // (8 + 4 + 16 + 2) × 2.
-    assert_eq!(load(&mut chip, 0x1000_0100), 2 + 60);
+    chip
+}
+
+#[test]
+fn quad_reads_without_an_instruction_cost_what_they_take() {
+    // (8 address and mode + 4 wait + 16 data + 2 chip select) bits.
+    for divider in [4, 2] {
+        let mut chip = with_quad_reads(divider, true);
+        assert_eq!(
+            load(&mut chip, 0x1000_0100),
+            2 + 30 * u64::from(divider),
+            "divider {divider}"
+        );
+    }
+}
+
+#[test]
+fn the_interface_and_the_flash_must_agree_whether_an_instruction_is_sent() {
+    let closed = |chip: &mut Chip| {
+        chip.cores[0].cpu.regs.r[0] = 0x1000_0000;
+        match run(chip, 10).expect_err("it stops").fault {
+            Fault::FlashClosed { why, .. } => why,
+            other => panic!("{other}"),
+        }
+    };
+    assert_eq!(
+        closed(&mut with_quad_reads(4, false)),
+        Closed::NotContinuous,
+        "it was not told"
+    );
+    // Told, and then read plainly.
+    let mut chip = with_quad_reads(4, true);
+    chip.bus.write32(SSI + 0xf4, 0x03 << 24 | 2 << 8 | 6 << 2);
+    assert_eq!(closed(&mut chip), Closed::Continuous);
+    // Mode bits that end it after the first read.
+    let mut chip = with_quad_reads(4, true);
+    chip.bus.write32(SSI + 0xf4, 4 << 11 | 8 << 2 | 2);
+    assert_eq!(closed(&mut chip), Closed::NotContinuous);
+}
+
+#[test]
+fn a_command_to_a_flash_that_reads_on_is_refused_by_name() {
+    let mut chip = with_quad_reads(4, true);
+    for (offset, value) in [
+        (0x08, 0),
+        (0x00, 7 << 16),
+        (0x08, 1),
+        (0x60, 0x9f),
+        (0x08, 0),
+    ] {
+        chip.bus.write32(SSI + offset, value);
+    }
+    let halt = run(&mut chip, 10).expect_err("it stops");
+    assert_eq!(halt.fault, Fault::FlashCommand(0x9f));
 }
 
 #[test]

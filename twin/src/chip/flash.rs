@@ -14,6 +14,7 @@
 
 use std::collections::VecDeque;
 
+use super::bus::Closed;
 use super::flash_journal::{Journal, Kind};
 use super::flash_serial::{Action, Serial, busy_us};
 use super::qspi::ChipSelect;
@@ -40,6 +41,8 @@ pub struct Flash {
     replies: VecDeque<u8>,
     serial: Serial,
     select: ChipSelect,
+    /// See [`Flash::closed`].
+    closed: Option<Closed>,
     /// Until this cycle an operation begun by a command keeps the chip busy.
     pub busy_until: u64,
     /// A command that nothing here knows.
@@ -58,18 +61,21 @@ impl Flash {
             replies: VecDeque::new(),
             serial: Serial::default(),
             select: ChipSelect::BySsi,
+            closed: Some(Closed::Disabled),
             busy_until: 0,
             unknown: None,
             journal: Journal::default(),
         }
     }
 
-    /// Registers back to reset.
+    /// Registers back to reset; the mask ROM ends a continuous read before it fetches boot2 (datasheet 2.8.1.2).
     pub fn reset(&mut self) {
         self.registers = [0; 0x100 / 4];
         self.replies.clear();
         self.serial.select();
+        self.serial.end_continuous();
         self.select = ChipSelect::BySsi;
+        self.judge_interface();
     }
 
     /// Erases whole sectors. False if the range leaves the chip or is not aligned.
@@ -128,9 +134,25 @@ impl Flash {
         }
     }
 
-    /// Whether the serial interface is on, as boot2 leaves it.
-    pub fn interface_enabled(&self) -> bool {
-        self.registers[SSIENR] & 1 != 0
+    /// Why the interface as it is set cannot fetch from the chip as it stands, if it cannot.
+    pub fn closed(&self) -> Option<Closed> {
+        self.closed
+    }
+
+    /// SPI_CTRLR0.INST_L = 0: XIP sends XIP_CMD as mode bits after the address, and the chip must expect that (datasheet 4.10.13).
+    fn judge_interface(&mut self) {
+        let control = self.registers[SPI_CTRLR0];
+        let sends_instruction = control >> 8 & 3 != 0;
+        let keeps_reading = self.serial.is_continuous() && control >> 28 & 3 == 2;
+        self.closed = if self.registers[SSIENR] & 1 == 0 {
+            Some(Closed::Disabled)
+        } else if self.serial.is_continuous() && sends_instruction {
+            Some(Closed::Continuous)
+        } else if !sends_instruction && !keeps_reading {
+            Some(Closed::NotContinuous)
+        } else {
+            None
+        };
     }
 
     /// The interface as the ROM's `flash_enter_cmd_xip` leaves it: plain reads (03h), slow (datasheet 2.8.3.1.3; divider as in the
@@ -141,6 +163,7 @@ impl Flash {
         self.registers[SPI_CTRLR0] = 0x03 << 24 | 2 << 8 | 6 << 2;
         self.registers[BAUDR] = ROM_DIVIDER;
         self.registers[SSIENR] = 1;
+        self.judge_interface();
     }
 
     /// System cycles of the transfer that brings one line of the XIP cache, as the interface is set, with `extra_bits` bit times more.
@@ -217,12 +240,15 @@ impl Flash {
             0x0c | 0x18 | 0x1c | 0x2c | 0x4c..=0x54 => return value == 0,
             _ => return false,
         }
+        self.judge_interface();
         true
     }
 
-    /// The SSI as the ROM sets it for commands: bytes both ways.
+    /// The SSI as the ROM sets it for commands: bytes both ways; the chip is told to wait for instructions.
     pub fn leave_xip(&mut self) {
         self.registers[CTRLR0] = 7 << 16;
+        self.serial.end_continuous();
+        self.judge_interface();
     }
 
     /// The SSI is on and fetches what an address asks for: CTRLR0's TMOD is "EEPROM read" (datasheet 4.10.13).

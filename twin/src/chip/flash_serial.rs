@@ -9,6 +9,10 @@
 //! | 03 0b | read, fast read | 20 52 d8 | erase 4, 32, 64 KiB (45, 120, 150 ms) |
 //! | 9f 90 ab | JEDEC id, maker and device, device | c7 60 | erase all (5 s) |
 //! | 4b | unique id | 66 99 | reset enable, reset |
+//! | eb | fast read quad I/O: with mode bits M5-4 = 10 and QE set the chip reads on and on | | |
+//!
+//! While it reads on and on (continuous read, 8.2.11), what a select begins with is an address, not an instruction: a command sent to it is an error
+//! here. The mask ROM ends it before it sends commands.
 //!
 //! A command ends where chip select rises; only then an erase or program begins. It needs WEL, which it clears, and is ignored while
 //! another one runs, as all but status reads are.
@@ -25,6 +29,11 @@ const ERASE_ALL_US: u64 = 5_000_000;
 const WRITE_STATUS_US: u64 = 10_000;
 const BUSY: u8 = 1 << 0;
 const WEL: u8 = 1 << 1;
+/// Status 2: quad enable.
+const QE: u8 = 1 << 1;
+/// Mode bits after the address of a quad read: M5-4 = 10 keep the chip reading (8.2.11).
+const MODE_BITS: u8 = 0x30;
+const MODE_CONTINUOUS: u8 = 0x20;
 
 /// What a command does to the cells, once chip select has risen.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,6 +51,8 @@ pub(super) struct Serial {
     status: [u8; 3],
     /// The command met a chip that was busy.
     ignored: bool,
+    /// It takes addresses without an instruction.
+    continuous: bool,
 }
 
 impl Default for Serial {
@@ -50,13 +61,24 @@ impl Default for Serial {
             command: Vec::new(),
             write_enabled: false,
             // Status 2: QE set, as boards with quad flash ship it.
-            status: [0x00, 0x02, 0x60],
+            status: [0x00, QE, 0x60],
             ignored: false,
+            continuous: false,
         }
     }
 }
 
 impl Serial {
+    /// Whether a select begins with an address and mode bits.
+    pub(super) fn is_continuous(&self) -> bool {
+        self.continuous
+    }
+
+    /// Bytes of ones on all lines: the chip waits for an instruction again.
+    pub(super) fn end_continuous(&mut self) {
+        self.continuous = false;
+    }
+
     /// A command is on its way.
     pub(super) fn under_way(&self) -> bool {
         !self.command.is_empty()
@@ -117,6 +139,10 @@ impl Serial {
             self.command.clear();
             return Ok(None);
         };
+        if self.continuous {
+            self.command.clear();
+            return Err(command);
+        }
         let address = self.address() % size;
         let erase = |len: usize, us: u64| Action::Erase {
             offset: address / len * len,
@@ -159,8 +185,13 @@ impl Serial {
             (0x02, 5..) => Some(self.program(address)),
             (0x01 | 0x31 | 0x11 | 0x20 | 0x52 | 0xd8 | 0xc7 | 0x60 | 0x02, _) => None,
             (0x05 | 0x35 | 0x15 | 0x9f | 0x90 | 0xab | 0x4b | 0x03 | 0x0b | 0x66 | 0x99, _) => None,
-            // Continuous read of the quad commands ends with bytes of ones.
-            (0xeb | 0xff, _) => None,
+            // The SSI sends address and mode as one word: the low byte is the mode.
+            (0xeb, 2..) if self.status[1] & QE != 0 => {
+                let mode = self.command[length - 1];
+                self.continuous = mode & MODE_BITS == MODE_CONTINUOUS;
+                None
+            }
+            (0xff, _) => None,
             (other, _) => {
                 self.command.clear();
                 return Err(other);

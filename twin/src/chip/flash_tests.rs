@@ -22,8 +22,14 @@ fn command(chip: &mut Chip, bytes: &[u8]) -> Vec<u8> {
 
 fn flash() -> Chip {
     let mut chip = chip(&FOREVER);
-    // Bytes, both ways; on.
-    for (offset, value) in [(0x08, 0), (0x00, 7 << 16), (0x10, 1), (0x08, 1)] {
+    // Bytes, both ways; reads of the XIP window would send 03h; on.
+    for (offset, value) in [
+        (0x08, 0),
+        (0x00, 7 << 16),
+        (0x10, 1),
+        (0xf4, 0x03 << 24 | 2 << 8 | 6 << 2),
+        (0x08, 1),
+    ] {
         chip.bus.write32(SSI + offset, value);
     }
     chip

@@ -71,9 +71,13 @@ pub(super) fn block(address: u32) -> &'static Block {
     &BLOCKS[slot(address)]
 }
 
-/// `ADC+0x004`.
+/// `ADC.RESULT`; `ADC+0x0f0` where the datasheet lists no register.
 pub(super) fn register(address: u32) -> String {
-    format!("{}+{:#05x}", block(address).name, address & 0xfff)
+    let (block, offset) = (block(address).name, address & 0xfff);
+    match super::names::name(block, offset) {
+        Some(name) => format!("{block}.{name}"),
+        None => format!("{block}+{offset:#05x}"),
+    }
 }
 
 static BLOCKS: [Block; SLOTS] = {
@@ -137,8 +141,9 @@ mod tests {
     fn each_block_has_a_slot_of_its_own() {
         let named = BLOCKS.iter().filter(|b| b.name != "unknown").count();
         assert_eq!(named, 37);
-        assert_eq!(register(0x4004_c004), "ADC+0x004");
-        assert_eq!(register(0x5011_0050), "USBCTRL_REGS+0x050");
-        assert_eq!(register(0xe000_ed08), "PPB+0xd08");
+        assert_eq!(register(0x4004_c004), "ADC.RESULT");
+        assert_eq!(register(0x5011_0050), "USBCTRL_REGS.SIE_STATUS");
+        assert_eq!(register(0x4000_002c), "SYSINFO+0x02c");
+        assert_eq!(register(0xe000_ed08), "PPB.VTOR");
     }
 }

@@ -16,6 +16,7 @@ pub mod debug;
 mod fabric;
 mod fault;
 mod lines;
+mod names;
 mod peripherals;
 mod ppb;
 mod registers;

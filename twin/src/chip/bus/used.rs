@@ -39,7 +39,7 @@ impl Used {
         bits[bit / 64] |= 1 << (bit % 64);
     }
 
-    /// One line a register, in the order of their addresses: `UART1+0x018 r`. USB's memory is one line.
+    /// One line a register, in the order of their addresses: `UART1.UARTFR r`. USB's memory is one line.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = Vec::new();
         for bit in 0..SLOTS * WORDS {

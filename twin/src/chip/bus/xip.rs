@@ -52,6 +52,10 @@ pub enum Closed {
     CommandMode,
     /// While a sector is erased or a page programmed.
     Busy,
+    /// The flash reads on and on (after a quad read whose mode bits said so), and the SSI sends an instruction first.
+    Continuous,
+    /// The SSI sends no instruction, and the flash waits for one.
+    NotContinuous,
 }
 
 impl std::fmt::Display for Closed {
@@ -60,6 +64,10 @@ impl std::fmt::Display for Closed {
             Self::Disabled => "the SSI is disabled",
             Self::CommandMode => "the flash is in command mode, not in XIP",
             Self::Busy => "the flash erases or programs",
+            Self::Continuous => "the flash is in continuous read and the SSI sends an instruction",
+            Self::NotContinuous => {
+                "the SSI sends no instruction and the flash is not in continuous read"
+            }
         })
     }
 }
@@ -190,10 +198,8 @@ impl Bus {
             Some(Closed::Busy)
         } else if self.xip.command_mode {
             Some(Closed::CommandMode)
-        } else if !self.flash.interface_enabled() {
-            Some(Closed::Disabled)
         } else {
-            None
+            self.flash.closed()
         }
     }
 

@@ -355,7 +355,7 @@ fn the_sniffer_watches_its_channel_alone_and_only_if_that_one_is_marked() {
     assert_eq!(chip.bus.read32(SNIFF_DATA), 0);
     chip.bus.write32(SNIFF_CTRL, 9 << 5 | 1);
     let halt = run(&mut chip, 10).expect_err("no such calculation");
-    assert!(halt.to_string().contains("DMA+0x434"), "{halt}");
+    assert!(halt.to_string().contains("DMA.SNIFF_CTRL"), "{halt}");
 }
 
 #[test]
@@ -488,7 +488,8 @@ fn what_does_not_exist_stops_the_chip_by_name() {
     start(&mut board, 6, SOURCE, SINK, 1, treq(50) | EN);
     let halt = run(&mut board, 10).expect_err("no such DREQ");
     assert!(
-        halt.to_string().starts_with("TREQ_SEL of DMA+0x18c"),
+        halt.to_string()
+            .starts_with("TREQ_SEL of DMA.CH6_CTRL_TRIG"),
         "{halt}"
     );
     let mut board = chip(&FOREVER);

@@ -406,7 +406,7 @@ fn dma_feeds_and_empties_the_fifos_by_dreq() {
 
 #[test]
 fn target_mode_and_ten_bit_addresses_are_errors_that_name_the_register() {
-    for (offset, value, name) in [(CON, 0x325, "I2C1+0x000"), (TAR, 0xc00, "I2C1+0x004")] {
+    for (offset, value, name) in [(CON, 0x325, "I2C1.IC_CON"), (TAR, 0xc00, "I2C1.IC_TAR")] {
         let (mut chip, _) = bus();
         chip.bus.write32(I2C1 + offset, value);
         let halt = run(&mut chip, 10).expect_err("it stops");

@@ -169,7 +169,7 @@ fn the_fifos_tell_half_full_overrun_and_timeout() {
 
 #[test]
 fn formats_and_target_mode_that_are_not_modelled_stop_the_chip() {
-    for (register, value, name) in [(CR0, 0x17, "SPI1+0x000"), (CR1, 6, "SPI1+0x004")] {
+    for (register, value, name) in [(CR0, 0x17, "SPI1.SSPCR0"), (CR1, 6, "SPI1.SSPCR1")] {
         let mut chip = spi(0, 8);
         chip.bus.write32(register, value);
         let halt = run(&mut chip, 10).expect_err("it stops");
