@@ -39,7 +39,7 @@ fn crate_of(symbol: &str) -> Option<&str> {
 
 fn layer_of(name: &str) -> &'static str {
     match name {
-        "mode_s" | "demod" | "tracker" | "report" | "shell" => "services",
+        "mode_s" | "demod" | "tracker" | "report" | "settings" | "shell" => "services",
         "drivers" => "drivers",
         "hal" => "hal",
         "app" | "bootloader" => "image",
