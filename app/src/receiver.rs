@@ -21,7 +21,7 @@ use drivers::pulse_capture::CaptureCounters;
 use hal::{timer, uart::CommsUart, usb::UsbConsole, watchdog};
 use heapless::spsc::Consumer;
 use mode_s::Message;
-use report::csbee;
+use report::Statistics;
 use tracker::{Heard, Tracker};
 
 /// Aircraft tracked at once.
@@ -125,12 +125,11 @@ impl Receiver {
         self.second_ends_us = (u64::from(self.second) + 1) * 1_000_000;
         self.tracker.each_second(now_ms);
         let demodulated = self.shared.demod.snapshot().demodulated;
-        let statistics = csbee::Statistics {
+        let statistics = Statistics {
             demodulations: Some(demodulated.wrapping_sub(self.last.0)),
-            mode_ac_frames: None,
             mode_s_frames: Some(self.decode.offered.wrapping_sub(self.last.1)),
-            stamp_clock_hz: None,
             uptime_s: self.second,
+            ..Statistics::default()
         };
         self.last = (demodulated, self.decode.offered);
         self.console_reports

@@ -11,7 +11,7 @@
 
 use crate::port::{Outlet, Port};
 use demod::RawFrame;
-use report::{Full, beast, csbee, raw};
+use report::{Bits, FrameReport, FrameTimes, Full, Moment, Statistics, beast, csbee, raw};
 use shell::Protocol;
 use tracker::Tracker;
 
@@ -47,17 +47,25 @@ impl Reports {
 
     /// A frame was accepted: its bits as received.
     pub fn frame<O: Outlet>(&mut self, port: &mut Port<O>, raw_frame: &RawFrame) {
+        if matches!(self.protocol, Protocol::None | Protocol::Csbee) {
+            return;
+        }
         let mut out = [0; if raw::MAX_HEX > beast::MAX_MESSAGE {
             raw::MAX_HEX
         } else {
             beast::MAX_MESSAGE
         }];
+        let received = raw_frame.received();
+        let report = FrameReport {
+            bits: Bits::ModeS(&received),
+            level_cdbm: raw_frame.level,
+            quality_cdb: None,
+            times: FrameTimes::at(raw_frame.arrival),
+        };
         let made = match self.protocol {
             Protocol::None | Protocol::Csbee => return,
-            Protocol::Beast => {
-                beast::frame(&raw_frame.received(), raw_frame.arrival, None, &mut out)
-            }
-            Protocol::Raw => raw::hex(&raw_frame.received(), &mut out),
+            Protocol::Beast => beast::frame(&report, beast::Stamp::Count12Mhz, &mut out),
+            Protocol::Raw => raw::hex(&report, &mut out),
         };
         send(port, &out, made);
     }
@@ -67,7 +75,7 @@ impl Reports {
         &mut self,
         port: &mut Port<O>,
         tracker: &Tracker<N>,
-        statistics: &csbee::Statistics,
+        statistics: &Statistics,
     ) {
         if let Some((next, count)) = self.burst.take() {
             port.dropped_unmade(count.saturating_sub(next) as u32);
@@ -112,7 +120,7 @@ impl Reports {
                 break;
             }
             let mut out = [0; csbee::MAX_LINE];
-            let made = csbee::aircraft(aircraft, now_ms, &mut out);
+            let made = csbee::aircraft(aircraft, &Moment::at(now_ms), &mut out);
             send(port, &out, made);
             done += 1;
         }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use clap::builder::PossibleValue;
 use clap::{Arg, ValueEnum};
 use mode_s::{Frame, Message};
-use report::{beast, csbee};
+use report::{Moment, Statistics, beast, csbee};
 use tracker::Tracker;
 
 use crate::json::{self, Tracked};
@@ -119,7 +119,9 @@ impl<W: Write> Printer<W> {
             Form::Beast => {
                 let mut buffer = [0; beast::MAX_MESSAGE];
                 let stamp = heard.count.max(0) as u64;
-                match beast::stamped(&heard.frame, stamp, beast::LEVEL_UNKNOWN, &mut buffer) {
+                let kind = if heard.frame.is_long() { b'3' } else { b'2' };
+                let (level, data) = (beast::LEVEL_UNKNOWN, heard.frame.bytes());
+                match beast::message(kind, stamp, level, data, &mut buffer) {
                     Ok(len) => self.out.write_all(&buffer[..len]),
                     Err(report::Full) => Ok(()),
                 }
@@ -164,11 +166,11 @@ impl<W: Write> Printer<W> {
         }
         let mut line = [0; csbee::MAX_LINE];
         for aircraft in self.tracking.aircraft() {
-            if let Ok(len) = csbee::aircraft(aircraft, now_ms, &mut line) {
+            if let Ok(len) = csbee::aircraft(aircraft, &Moment::at(now_ms), &mut line) {
                 self.out.write_all(&line[..len])?;
             }
         }
-        let statistics = csbee::Statistics {
+        let statistics = Statistics {
             mode_s_frames: Some(frames),
             uptime_s: (now_ms / 1000) as u32,
             ..Default::default()

@@ -17,6 +17,12 @@ impl ModeACode {
         ModeACode(ORDER.iter().fold(0, |code, &bit| code << 1 | id >> bit & 1))
     }
 
+    /// The pulses in the order of a Mode A reply, a nibble a digit: 0 A4 A2 A1 0 B4 B2 B1 0 C4 C2 C1 0 D4 D2 D1, so that hexadecimal
+    /// digits print the squawk.
+    pub const fn pulses(self) -> u16 {
+        (self.0 & 0o7000) << 3 | (self.0 & 0o700) << 2 | (self.0 & 0o70) << 1 | self.0 & 7
+    }
+
     /// The four digits, 0-7 each, first to last.
     pub const fn digits(self) -> [u8; 4] {
         [
@@ -31,6 +37,13 @@ impl ModeACode {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pulses_are_the_digits_in_hexadecimal() {
+        for (code, pulses) in [(0o7363, 0x7363), (0o0363, 0x0363), (0o7777, 0x7777)] {
+            assert_eq!(ModeACode(code).pulses(), pulses);
+        }
+    }
 
     #[test]
     fn every_pulse_lands_on_its_digit() {

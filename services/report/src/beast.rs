@@ -1,97 +1,132 @@
-//! Mode S Beast: binary frames with a 12 MHz stamp.
+//! Mode S Beast: binary frames with a stamp and a level.
 //!
 //! ```text
-//!   1A  '2' | '3'  stamp, 6 bytes, high byte first   level  7 | 14 bytes of the frame
-//!       short long                                   1-FE, FF unknown
+//!   1A  '1' | '2' | '3'     stamp, 6 bytes, high byte first   level            2 | 7 | 14 bytes of the frame
+//!       Mode A/C short long                                   1-FE, FF unknown
 //!   after the type, every 1A of stamp, level and frame is sent twice
 //! ```
-//! The stamp counts 12 MHz since the start of capture, 48 bits, and never restarts. It names the end of the frame's first 56 bits,
-//! short or long: 8 µs of preamble and 56 µs after the arrival.
+//! | stamp | content | names | none |
+//! |---|---|---|---|
+//! | 12 MHz | counts since the start of capture, 48 bits, never restarting | end of the first 56 bits; Mode A/C: F2 | – |
+//! | GPS | second of the day << 30 | nanoseconds | end of the frame; Mode A/C: F2 | six zero bytes |
 //!
-//! Source: the Beast's public data format description (wiki of Mode-S Beast) and the vector in this file's test.
+//! In GPS mode a status message (`radarcape`) goes out once a second, by which readers know the mode. This module is all that a frame needs
+//! and stands in SRAM.
+//!
+//! Source: the Beast's public data format description (wiki of Mode-S Beast) and the vector in this file's test; the GPS form as the
+//! reader of mlat-client takes it.
 
 use crate::Full;
-use crate::text::Text;
-use mode_s::Frame;
+use crate::frame_report::{Bits, DAY_S, FrameReport, FrameTimes, SECOND_NS};
+use crate::level;
 
 /// A slice that holds any Beast message: every one of 21 bytes doubled, and two.
 pub const MAX_MESSAGE: usize = 2 + 2 * (6 + 1 + 14);
 
-/// Ticks of the 120 MHz system clock in one count of the stamp.
+/// Ticks of the 120 MHz system clock in one count of the 12 MHz stamp.
 pub const TICKS_PER_COUNT: u64 = 10;
 /// From the arrival (leading edge of the preamble) to the end of the first 56 bits: 64 µs in ticks of 120 MHz.
 pub const STAMP_AFTER_ARRIVAL_TICKS: u64 = (8 + 56) * 120;
+/// From F1 to F2 of a Mode A/C reply: 20.3 µs in ticks of 120 MHz.
+const F2_AFTER_F1_TICKS: u64 = 2_436;
+/// The same in nanoseconds.
+const F2_AFTER_F1_NS: u32 = 20_300;
+/// Preamble and bits of a short frame, ns.
+const SHORT_NS: u32 = 64_000;
+/// Preamble and bits of a long frame, ns.
+const LONG_NS: u32 = 120_000;
 /// Level byte of a frame whose level is unknown.
-pub const LEVEL_UNKNOWN: u8 = 0xFF;
+pub const LEVEL_UNKNOWN: u8 = level::UNKNOWN;
 
 const ESCAPE: u8 = 0x1A;
 
-/// One frame that arrived at `arrival` (ticks of 120 MHz), with its level (1-254) where known.
-pub fn frame(
-    frame: &Frame,
-    arrival: u64,
-    level: Option<u8>,
-    out: &mut [u8],
-) -> Result<usize, Full> {
-    let stamp = arrival.wrapping_add(STAMP_AFTER_ARRIVAL_TICKS) / TICKS_PER_COUNT;
-    stamped(frame, stamp, level.unwrap_or(LEVEL_UNKNOWN), out)
+/// Which stamp frames carry.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stamp {
+    /// 12 MHz since the start of capture.
+    #[default]
+    Count12Mhz,
+    /// Second of the day and nanoseconds, UTC.
+    Gps,
 }
 
-/// One frame with the stamp's low 48 bits and the level byte as they go out.
-pub fn stamped(frame: &Frame, stamp: u64, level: u8, out: &mut [u8]) -> Result<usize, Full> {
-    let mut text = Text::new(out);
-    text.byte(ESCAPE)?;
-    text.byte(if frame.is_long() { b'3' } else { b'2' })?;
-    let stamp = stamp.to_be_bytes();
-    for &byte in stamp[2..].iter().chain(&[level]).chain(frame.bytes()) {
-        text.byte(byte)?;
+/// One frame.
+pub fn frame(report: &FrameReport<'_>, stamp: Stamp, out: &mut [u8]) -> Result<usize, Full> {
+    let (kind, data): (u8, &[u8]) = match report.bits {
+        Bits::ModeS(frame) if frame.is_long() => (b'3', frame.bytes()),
+        Bits::ModeS(frame) => (b'2', frame.bytes()),
+        Bits::ModeAc(code) => (b'1', &code.pulses().to_be_bytes()),
+    };
+    let stamp = match stamp {
+        Stamp::Count12Mhz => count(&report.times, kind),
+        Stamp::Gps => gps(&report.times, kind),
+    };
+    message(kind, stamp, level::byte(report.level_cdbm), data, out)
+}
+
+/// 12 MHz counts to the instant that a message of this kind names.
+fn count(times: &FrameTimes, kind: u8) -> u64 {
+    let later = match kind {
+        b'1' => F2_AFTER_F1_TICKS,
+        _ => STAMP_AFTER_ARRIVAL_TICKS,
+    };
+    times.arrival.wrapping_add(later) / TICKS_PER_COUNT
+}
+
+/// Second of the day and nanoseconds of the instant that a message of this kind names; 0 while unknown.
+fn gps(times: &FrameTimes, kind: u8) -> u64 {
+    let (Some(second), Some(ns)) = (times.utc_second, times.since_pps_ns) else {
+        return 0;
+    };
+    let later = match kind {
+        b'1' => F2_AFTER_F1_NS,
+        b'2' => SHORT_NS,
+        _ => LONG_NS,
+    };
+    seconds_and_ns(second, ns.saturating_add(later))
+}
+
+/// The GPS form of a time; a full second of nanoseconds is carried, also across midnight.
+pub(crate) fn seconds_and_ns(second: u32, ns: u32) -> u64 {
+    let (second, ns) = if ns >= SECOND_NS {
+        (second.saturating_add(1), ns - SECOND_NS)
+    } else {
+        (second, ns)
+    };
+    let second = if second >= DAY_S {
+        second - DAY_S
+    } else {
+        second
+    };
+    u64::from(second) << 30 | u64::from(ns)
+}
+
+/// One message with the stamp's low 48 bits and the level byte as they go out.
+pub fn message(
+    kind: u8,
+    stamp: u64,
+    level: u8,
+    data: &[u8],
+    out: &mut [u8],
+) -> Result<usize, Full> {
+    let mut places = out.iter_mut();
+    let mut length = 0;
+    let mut put = |byte| {
+        *places.next().ok_or(Full)? = byte;
+        length += 1;
+        Ok(())
+    };
+    put(ESCAPE)?;
+    put(kind)?;
+    for &byte in stamp.to_be_bytes()[2..].iter().chain(&[level]).chain(data) {
+        put(byte)?;
         if byte == ESCAPE {
-            text.byte(byte)?;
+            put(byte)?;
         }
     }
-    Ok(text.len())
+    Ok(length)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn published_vector_with_three_doubled_escapes() {
-        let short = Frame::from_bytes(&[0x00, 0xA1, 0x84, 0x1A, 0xC3, 0xB3, 0x1D]).unwrap();
-        let mut out = [0; MAX_MESSAGE];
-        let length = stamped(&short, 0x083E_27B6_CB6A, 0x1A, &mut out).unwrap();
-        assert_eq!(
-            out[..length],
-            [
-                0x1A, 0x32, 0x08, 0x3E, 0x27, 0xB6, 0xCB, 0x6A, 0x1A, 0x1A, 0x00, 0xA1, 0x84, 0x1A,
-                0x1A, 0xC3, 0xB3, 0x1D
-            ]
-        );
-    }
-
-    #[test]
-    fn stamp_names_the_end_of_the_first_56_bits() {
-        let long = Frame::from_bytes(&[0x88; 14]).unwrap();
-        let mut out = [0; MAX_MESSAGE];
-        // 1 s after the start: 12 000 000 counts, and 768 for 64 µs.
-        let length = frame(&long, 120_000_000, None, &mut out).unwrap();
-        assert_eq!(length, 2 + 6 + 1 + 14);
-        assert_eq!(out[..2], [0x1A, b'3']);
-        assert_eq!(out[2..8], 12_000_768u64.to_be_bytes()[2..]);
-        assert_eq!(out[8], LEVEL_UNKNOWN);
-    }
-
-    #[test]
-    fn the_longest_message_fits_and_one_byte_less_is_refused() {
-        let frame = Frame::from_bytes(&[0x1A; 7]).unwrap();
-        let mut out = [0; MAX_MESSAGE];
-        let stamp = 0x1A1A_1A1A_1A1A;
-        let length = stamped(&frame, stamp, 0x1A, &mut out).unwrap();
-        assert_eq!(length, 2 + 2 * 14);
-        assert_eq!(
-            stamped(&frame, stamp, 0x1A, &mut out[..length - 1]),
-            Err(Full)
-        );
-    }
-}
+#[path = "beast_tests.rs"]
+mod tests;

@@ -8,7 +8,7 @@
 //! LAT and LON degrees with five decimals, the rest decimal integers in the units of the document. An unknown field is empty.
 //! CRC is CRC-16/IBM-3740 with its bytes swapped, over `#` up to and including the last comma, four hexadecimal digits.
 //!
-//! SIGS and SIGQ are empty until a level was measured; the ACFPS of an aircraft is always empty (Mode A/C is not received). SYSINFO is empty until
+//! SIGS and SIGQ are empty until a level was measured. An aircraft's ACFPS counts the Mode A/C replies that it alone can have sent. SYSINFO is empty until
 //! a position, a velocity or a status message has told something of it; a part of it that is not known reads 0. TRACK and VELH are over the ground only: an
 //! aircraft that sends heading and airspeed leaves them empty.
 //!
@@ -16,7 +16,10 @@
 
 use crate::Full;
 use crate::ecat::csbee_ecat;
-use crate::text::Text;
+use crate::moment::Moment;
+use crate::statistics::Statistics;
+use crate::sysinfo::sysinfo;
+use crate::text::{Text, whole_decibels, whole_knots};
 use crc::{CRC_16_IBM_3740, Crc, Table};
 use tracker::{Aircraft, Field};
 
@@ -55,42 +58,9 @@ const UPDATES: [Field; 6] = [
     Field::VerticalRate,
 ];
 
-/// Lowest bits of SYSINFO's parts, the document's 4.1.1.3; the low twelve bits are NICNAC of other protocols.
-mod part {
-    pub const NIC: u32 = 0;
-    pub const NIC_BARO: u32 = 4;
-    pub const NACV: u32 = 5;
-    pub const NACP: u32 = 8;
-    pub const GVA: u32 = 12;
-    pub const SIL: u32 = 14;
-    pub const SDA: u32 = 16;
-    /// GAOK: the offset is known.
-    pub const ANTENNA_KNOWN: u32 = 18;
-    /// GAOD: half the metres.
-    pub const ANTENNA_DISTANCE: u32 = 19;
-    /// GAOR: right of the roll axis.
-    pub const ANTENNA_RIGHT: u32 = 21;
-    /// MDIM: greater of length and width, metres.
-    pub const GREATEST_DIMENSION: u32 = 22;
-}
-
-/// What the `#S` line tells, each over the last second; `None` is sent as an empty field.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Statistics {
-    /// DPS: attempted demodulations.
-    pub demodulations: Option<u32>,
-    /// ACFPS: Mode A and Mode C frames.
-    pub mode_ac_frames: Option<u32>,
-    /// SFPS: valid Mode S frames.
-    pub mode_s_frames: Option<u32>,
-    /// TSCAL: measured frequency of the clock behind the stamps, Hz; needs PPS.
-    pub stamp_clock_hz: Option<u32>,
-    /// UPTIME: seconds since RUN was entered.
-    pub uptime_s: u32,
-}
-
-/// One aircraft as an `#A` line at the time `now_ms` (the tracker's clock).
-pub fn aircraft(aircraft: &Aircraft, now_ms: u64, out: &mut [u8]) -> Result<usize, Full> {
+/// One aircraft as an `#A` line.
+pub fn aircraft(aircraft: &Aircraft, moment: &Moment, out: &mut [u8]) -> Result<usize, Full> {
+    let now_ms = moment.now_ms;
     let mut line = Text::new(out);
     line.bytes(b"#A:")?;
     line.hex(aircraft.address().bits(), 6)?;
@@ -102,10 +72,7 @@ pub fn aircraft(aircraft: &Aircraft, now_ms: u64, out: &mut [u8]) -> Result<usiz
     }
     line.byte(b',')?;
     if let Some(squawk) = aircraft.squawk() {
-        squawk
-            .digits()
-            .iter()
-            .try_for_each(|digit| line.byte(b'0' + digit))?;
+        line.octal4(squawk)?;
     }
     let category = aircraft.category().map(csbee_ecat);
     decimal_field(&mut line, category.map(i32::from))?;
@@ -117,15 +84,14 @@ pub fn aircraft(aircraft: &Aircraft, now_ms: u64, out: &mut [u8]) -> Result<usiz
     let track = aircraft.track(now_ms).map(|t| t.whole_degrees());
     decimal_field(&mut line, track.map(i32::from))?;
     let speed = aircraft.ground_speed_eighths(now_ms);
-    decimal_field(&mut line, speed.map(knots))?;
+    decimal_field(&mut line, speed.map(whole_knots))?;
     let rate = aircraft.vertical_rate(now_ms);
     decimal_field(&mut line, rate.map(|rate| i32::from(rate.feet_per_minute)))?;
     decimal_field(&mut line, aircraft.level_cdbm().map(whole_decibels))?;
     decimal_field(&mut line, aircraft.quality_cdb().map(whole_decibels))?;
-    // ACFPS
-    line.byte(b',')?;
-    let frames = aircraft.counts_last_second().mode_s;
-    decimal_field(&mut line, Some(i32::from(frames)))?;
+    let counts = aircraft.counts_last_second();
+    decimal_field(&mut line, Some(i32::from(counts.mode_ac)))?;
+    decimal_field(&mut line, Some(i32::from(counts.mode_s)))?;
     line.byte(b',')?;
     if let Some(sysinfo) = sysinfo(aircraft, now_ms) {
         line.hex(sysinfo, 1)?;
@@ -162,34 +128,16 @@ fn end(mut line: Text<'_>) -> Result<usize, Full> {
     Ok(line.len())
 }
 
-/// Whole knots of eighths, rounded.
-fn knots(eighths: u16) -> i32 {
-    (i32::from(eighths) + 4) / 8
-}
-
-/// Whole decibels of hundredths, rounded.
-fn whole_decibels(hundredths: i16) -> i32 {
-    (i32::from(hundredths) + 50).div_euclid(100)
-}
-
 /// A comma and a decimal integer.
 fn decimal_field(line: &mut Text<'_>, value: Option<i32>) -> Result<(), Full> {
     line.byte(b',')?;
     value.map_or(Ok(()), |value| line.decimal(value))
 }
 
-/// A comma and an angle of 1e-7 degrees with five decimals, rounded half away from zero.
+/// A comma and degrees.
 fn degrees_field(line: &mut Text<'_>, angle: Option<i32>) -> Result<(), Full> {
     line.byte(b',')?;
-    let Some(angle) = angle else { return Ok(()) };
-    let hundred_thousandths = (angle.unsigned_abs() + 50) / 100;
-    // What rounds to zero has no sign.
-    if angle < 0 && hundred_thousandths > 0 {
-        line.byte(b'-')?;
-    }
-    line.digits(hundred_thousandths / 100_000, 1)?;
-    line.byte(b'.')?;
-    line.digits(hundred_thousandths % 100_000, 5)
+    angle.map_or(Ok(()), |angle| line.degrees(angle))
 }
 
 fn flags(aircraft: &Aircraft, now_ms: u64) -> u32 {
@@ -223,32 +171,6 @@ fn flags(aircraft: &Aircraft, now_ms: u64) -> u32 {
         }
     }
     flags
-}
-
-/// SYSINFO; what is not known of it reads 0, as the document's tables say. `None` where nothing is known.
-fn sysinfo(aircraft: &Aircraft, now_ms: u64) -> Option<u32> {
-    let (nic, nacv) = (aircraft.nic(now_ms), aircraft.nacv(now_ms));
-    let (status, airframe) = (aircraft.status(now_ms), aircraft.airframe());
-    if nic.is_none() && nacv.is_none() && status.is_none() && !airframe.is_known() {
-        return None;
-    }
-    let status = status.unwrap_or_default();
-    let antenna = airframe.antenna();
-    let parts = [
-        (nic.unwrap_or(0), part::NIC),
-        (status.nic_baro().into(), part::NIC_BARO),
-        (nacv.unwrap_or(0), part::NACV),
-        (status.nac_p(), part::NACP),
-        (status.gva(), part::GVA),
-        (status.sil(), part::SIL),
-        (status.sda(), part::SDA),
-        (antenna.is_some().into(), part::ANTENNA_KNOWN),
-        (antenna.map_or(0, |a| a.metres / 2), part::ANTENNA_DISTANCE),
-        (antenna.is_some_and(|a| a.right).into(), part::ANTENNA_RIGHT),
-        (airframe.greatest_m().unwrap_or(0), part::GREATEST_DIMENSION),
-    ];
-    let pack = |word, (value, lowest)| word | u32::from(value) << lowest;
-    Some(parts.into_iter().fold(0, pack))
 }
 
 #[cfg(test)]

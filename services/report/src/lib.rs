@@ -1,12 +1,15 @@
 //! The output protocols: one file a protocol, each turning aircraft, statistics or frames into bytes.
 //!
 //! ```text
-//!   Aircraft, Statistics ──► csbee ──► "#A:…\r\n", "#S:…\r\n"
-//!   Frame, arrival tick  ──► beast ──► 1A 32|33 stamp level data
-//!   Frame                ──► raw   ──► "*<hex>;(…)\r\n" or "*<hex>;\r\n"
+//!   Aircraft, Moment ──► csbee ──► "#A:…\r\n"
+//!   Statistics       ──► csbee ──► "#S:…\r\n"
+//!   FrameReport      ──► beast ──► 1A type stamp level data
+//!                    ──► raw   ──► "*<hex>;(…)\r\n" or "*<hex>;\r\n"
 //! ```
-//! Every encoder writes one whole message into the slice it is given and returns its length, or writes nothing of use and returns
-//! [`Full`]: a port never sees half a message. The constants `MAX_…` are slice lengths that always suffice.
+//! The common way in: an encoder is given the tracker's [`Aircraft`](tracker::Aircraft), a [`FrameReport`], [`Statistics`] or [`Gnss`] by
+//! reference, the [`Moment`] where something ages, and the protocol's own options; what is not known is `None`. It writes one whole message
+//! into the slice it is given and returns its length, or writes nothing of use and returns [`Full`]: a port never sees half a message. The
+//! constants `MAX_…` are slice lengths that always suffice.
 //!
 //! What it is not: it keeps no state, opens no port and knows no schedule; the app decides when a report goes where.
 #![no_std]
@@ -18,8 +21,19 @@ extern crate std;
 pub mod beast;
 pub mod csbee;
 mod ecat;
+mod frame_report;
+mod gnss;
+pub mod level;
+mod moment;
 pub mod raw;
+mod statistics;
+mod sysinfo;
 mod text;
+
+pub use frame_report::{Bits, FrameReport, FrameTimes};
+pub use gnss::Gnss;
+pub use moment::{DAY_MS, Moment};
+pub use statistics::Statistics;
 
 /// The slice is too short for the message. Nothing of its content may be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,20 @@
 //! Text into a bounded slice: the few forms the protocols need, without `core::fmt` and without floating point.
 
 use crate::Full;
+use mode_s::ModeACode;
+
+/// The sixteen digits.
+const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
+
+/// Whole decibels of hundredths, rounded.
+pub(crate) fn whole_decibels(hundredths: i16) -> i32 {
+    (i32::from(hundredths) + 50).div_euclid(100)
+}
+
+/// Whole knots of eighths, rounded.
+pub(crate) fn whole_knots(eighths: u16) -> i32 {
+    (i32::from(eighths) + 4) / 8
+}
 
 /// A line under construction in a slice.
 pub(crate) struct Text<'a> {
@@ -34,9 +48,49 @@ impl<'a> Text<'a> {
     /// Upper-case hexadecimal, at least `digits` long.
     pub(crate) fn hex(&mut self, value: u32, digits: u32) -> Result<(), Full> {
         let needed = (32 - value.leading_zeros()).div_ceil(4).max(digits).max(1);
-        (0..needed).rev().try_for_each(|place| {
-            self.byte(b"0123456789ABCDEF"[(value >> (4 * place) & 0xF) as usize])
-        })
+        (0..needed)
+            .rev()
+            .try_for_each(|place| self.byte(DIGITS[(value >> (4 * place) & 0xF) as usize]))
+    }
+
+    /// Upper-case hexadecimal of 64 bits without leading zeros.
+    pub(crate) fn hex_long(&mut self, value: u64) -> Result<(), Full> {
+        let (high, low) = ((value >> 32) as u32, value as u32);
+        if high == 0 {
+            return self.hex(low, 1);
+        }
+        self.hex(high, 1)?;
+        self.hex(low, 8)
+    }
+
+    /// Bytes, two upper-case hexadecimal digits each.
+    pub(crate) fn hex_bytes(&mut self, bytes: &[u8]) -> Result<(), Full> {
+        let end = self.length + 2 * bytes.len();
+        let places = self.out.get_mut(self.length..end).ok_or(Full)?;
+        for (pair, &byte) in places.chunks_exact_mut(2).zip(bytes) {
+            pair[0] = DIGITS[usize::from(byte >> 4)];
+            pair[1] = DIGITS[usize::from(byte & 0xF)];
+        }
+        self.length = end;
+        Ok(())
+    }
+
+    /// A Mode A code as its four octal digits.
+    pub(crate) fn octal4(&mut self, code: ModeACode) -> Result<(), Full> {
+        let digits = code.digits();
+        digits.iter().try_for_each(|digit| self.byte(b'0' + digit))
+    }
+
+    /// An angle of 1e-7 degrees as degrees with five decimals, rounded half away from zero.
+    pub(crate) fn degrees(&mut self, angle: i32) -> Result<(), Full> {
+        let hundred_thousandths = (angle.unsigned_abs() + 50) / 100;
+        // What rounds to zero has no sign.
+        if angle < 0 && hundred_thousandths > 0 {
+            self.byte(b'-')?;
+        }
+        self.digits(hundred_thousandths / 100_000, 1)?;
+        self.byte(b'.')?;
+        self.digits(hundred_thousandths % 100_000, 5)
     }
 
     /// A decimal integer.
@@ -85,6 +139,38 @@ mod tests {
         assert_eq!(written(|t| t.hex(0x3F00, 1)), "3F00");
         assert_eq!(written(|t| t.hex(0xAB, 6)), "0000AB");
         assert_eq!(written(|t| t.hex(u32::MAX, 1)), "FFFFFFFF");
+    }
+
+    #[test]
+    fn long_hexadecimal_has_no_leading_zeros() {
+        assert_eq!(written(|t| t.hex_long(0)), "0");
+        assert_eq!(written(|t| t.hex_long(0x2B57_92B4_9315)), "2B5792B49315");
+        assert_eq!(written(|t| t.hex_long(0x1_0000_000A)), "10000000A");
+        assert_eq!(written(|t| t.hex_bytes(&[0x0A, 0xF0])), "0AF0");
+    }
+
+    #[test]
+    fn degrees_are_rounded_to_five_decimals() {
+        for (angle, text) in [
+            (0, "0.00000"),
+            (49, "0.00000"),
+            (50, "0.00001"),
+            (-49, "0.00000"),
+            (-50, "-0.00001"),
+            (203_265_249, "20.32652"),
+            (203_265_250, "20.32653"),
+            (-1_565_328_459, "-156.53285"),
+            (899_999_950, "90.00000"),
+            (-1_800_000_000, "-180.00000"),
+        ] {
+            assert_eq!(written(|t| t.degrees(angle)), text, "{angle}");
+        }
+    }
+
+    #[test]
+    fn half_a_unit_rounds_up() {
+        assert_eq!([3, 4, 11, 12].map(whole_knots), [0, 1, 1, 2]);
+        assert_eq!([-7_449, -7_450, 1_250].map(whole_decibels), [-74, -74, 13]);
     }
 
     #[test]
