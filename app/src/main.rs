@@ -4,8 +4,8 @@
 //!   PULSES ─ PIO ─ DMA ─ ring ─▶ core 1: demodulate ─▶ queue ─▶ core 0: decode, track, report ─▶ CONSOLE (USB), COMMS_UART
 //! ```
 //! Core 1 (`core1`) runs from SRAM with interrupts masked and sleeps between blocks of samples. Core 0 is one loop: frames, seconds,
-//! commands, ports; it sleeps when a turn moved nothing. One interrupt handler exists, UART1's, in `hal`. USB, the timer's alarm and
-//! core 1 only end the sleep.
+//! commands, ports; it sleeps when a turn moved nothing. There is no interrupt handler: USB, DMA, the timer's alarm and core 1 only end the
+//! sleep.
 //!
 //! The watchdog is fed by core 0 only after core 1 has taken another block: when either loop stops, the chip restarts within
 //! [`WATCHDOG_US`], through the bootloader, which verifies the image again.
@@ -36,7 +36,7 @@ use drivers::pulse_capture::{CaptureCounters, PulseCapture};
 use drivers::trigger_level::{self, TriggerLevel};
 use hal::parts::TRIGGER_LEVEL_PERIOD;
 use hal::take_once::TakeOnce;
-use hal::{Parts, sleep, timer, uart::CommsUart, watchdog};
+use hal::{Parts, sleep, timer, watchdog};
 use heapless::spsc::Queue;
 use port::Port;
 use receiver::{AIRCRAFT, Receiver, SharedCounters};
@@ -49,6 +49,9 @@ use tracker::Tracker;
 const WATCHDOG_US: u32 = 3_000_000;
 /// Core 0 wakes at least this often: LED, a rate change, the watchdog. Microseconds.
 const BEAT_US: u64 = 50_000;
+/// Core 0 looks for what COMMS_UART received at least this often, microseconds: DMA takes the characters, and nothing tells of them. A
+/// command is answered within 10 ms.
+const LOOK_US: u64 = 5_000;
 const _: () = assert!(TRIGGER_LEVEL_PERIOD == trigger_level::PERIOD);
 
 static RING: SampleRing = SampleRing::new();
@@ -116,6 +119,7 @@ fn start() -> Option<core::convert::Infallible> {
         start: cause,
         second: 0,
         second_ends_us: 1_000_000,
+        is_ending_second: false,
         last: (0, 0),
         reboot: None,
         confirm: Confirm::new(parts.flash),
@@ -146,11 +150,12 @@ fn start() -> Option<core::convert::Infallible> {
             parts.watchdog.feed();
         }
         if !(more_frames || more_reports || more_bytes) {
-            timer::set_alarm(next_beat_us);
+            let look_us = next_beat_us.min(now_us + LOOK_US);
+            timer::set_alarm(look_us);
             sleep::unless(|| {
                 receiver.queue.ready()
-                    || CommsUart::has_received()
-                    || timer::now_us() >= next_beat_us
+                    || receiver.comms.outlet.has_received()
+                    || timer::now_us() >= look_us
             });
         }
     }

@@ -4,7 +4,7 @@
 //!   queue ─ Message ─┬─ tracker
 //!                    ├─ CONSOLE reports ─▶ port
 //!                    └─ COMMS_UART reports ─▶ port
-//!   second ─ tracker.each_second ─ #S and bursts
+//!   second ─ tracker's turn, in slices ─ #S and bursts
 //! ```
 //! Time here is milliseconds of uptime, counted from the first sample, which is the zero of the frames' ticks too.
 
@@ -33,6 +33,8 @@ const REBOOT_AFTER_US: u64 = 100_000;
 /// Frames a turn of the loop: so that ports are served in between. A turn moves one USB packet of 64 bytes; with many more frames a turn than make a packet,
 /// the console's buffer would fill although the bus is idle whenever core 0 has a backlog.
 const FRAMES_A_TURN: usize = 4;
+/// Aircraft whose second ends in one turn of the loop: about 0.1 ms of core 0. All four hundred at once let the queue of frames overflow.
+const AIRCRAFT_A_TURN: usize = 8;
 
 /// Counters that core 1 writes.
 pub struct SharedCounters {
@@ -61,6 +63,8 @@ pub struct Receiver {
     /// takes 150 cycles for a division of 64 bits.
     pub second: u32,
     pub second_ends_us: u64,
+    /// The tracker has not ended the second that is over; then come its reports.
+    pub is_ending_second: bool,
     /// Counts at the start of the second: demodulated, decoded.
     pub last: (u32, u32),
     /// When to restart, microseconds of the timer, and what the bootloader is told.
@@ -106,6 +110,13 @@ impl Receiver {
         if self.uptime_us() >= self.second_ends_us {
             self.begin_second();
         }
+        if self.is_ending_second {
+            if !self.tracker.go_on(AIRCRAFT_A_TURN) {
+                self.is_ending_second = false;
+                self.begin_reports();
+            }
+            return true;
+        }
         if !(self.console_reports.in_burst() || self.comms_reports.in_burst()) {
             return false;
         }
@@ -123,7 +134,11 @@ impl Receiver {
         let now_ms = self.now_ms();
         self.second = (now_ms / 1000) as u32;
         self.second_ends_us = (u64::from(self.second) + 1) * 1_000_000;
-        self.tracker.each_second(now_ms);
+        self.tracker.begin_second(now_ms);
+        self.is_ending_second = true;
+    }
+
+    fn begin_reports(&mut self) {
         let demodulated = self.shared.demod.snapshot().demodulated;
         let statistics = Statistics {
             demodulations: Some(demodulated.wrapping_sub(self.last.0)),

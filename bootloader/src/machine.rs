@@ -69,6 +69,7 @@ impl Board {
             session.greet(self, Port::Console);
         }
         self.console_was_open = is_open;
+        self.comms.serve();
         for _ in 0..BYTES_A_TURN {
             let Some(byte) = self.comms.receive() else {
                 break;
@@ -102,7 +103,7 @@ impl Board {
             self.next_beat_us = now_us + BEAT_US;
         }
         timer::set_alarm(self.next_beat_us);
-        sleep::unless(|| CommsUart::has_received() || timer::now_us() >= self.next_beat_us);
+        sleep::unless(|| self.comms.has_received() || timer::now_us() >= self.next_beat_us);
     }
 
     /// Lets the last replies leave.
@@ -110,6 +111,7 @@ impl Board {
         let end_us = timer::now_us() + DRAIN_US;
         while timer::now_us() < end_us {
             self.console.poll(|_| {});
+            self.comms.serve();
         }
     }
 }

@@ -79,6 +79,13 @@ impl<const N: usize> ByteRing<N> {
         count
     }
 
+    /// Reader: the oldest bytes as they lie in one piece, for hardware that takes them itself. Empty only when nothing waits.
+    pub fn front(&self) -> &[AtomicU8] {
+        let start = self.read.load(Ordering::Relaxed) as usize & Self::MASK;
+        let end = (start + self.len()).min(N);
+        &self.cells[start..end]
+    }
+
     /// Reader: takes the oldest `count` bytes away (at most what waits).
     pub fn consume(&self, count: usize) {
         let count = count.min(self.len()) as u32;

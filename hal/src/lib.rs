@@ -9,7 +9,7 @@
 //! | [`pio_sampler`] | PULSES at 8 Msps, 32 samples a word | PIO0 SM0 |
 //! | [`dma_ring`] | a ring that DMA fills for ever | DMA channels 0 and 1, INTS1 |
 //! | [`timer`] | microseconds, one alarm | TIMER |
-//! | [`uart`] | COMMS_UART, both ways by interrupt | UART1 |
+//! | [`uart`] | COMMS_UART, both ways by DMA | UART1, DMA channels 9 to 11, INTS0 |
 //! | [`usb`] | the console's CDC ACM port | USBCTRL |
 //! | [`watchdog`] | feeding, forced reset, scratch 2/3, reset source | WATCHDOG, PSM.WDSEL, VREG_AND_CHIP_RESET |
 //! | [`core1`] | starting the second core; waking the first | PSM, SIO FIFO |

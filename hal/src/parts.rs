@@ -160,7 +160,7 @@ impl Parts {
             trigger_level: trigger_level_pwm(slices.pwm4, TRIGGER_LEVEL_PERIOD),
             sampler: PioSampler::new(p.PIO0, PULSES_GPIO),
             dma: DmaChannels { dma: p.DMA },
-            comms_uart: CommsUart::new(p.UART1, COMMS_BAUD),
+            comms_uart: CommsUart::comms(p.UART1, COMMS_BAUD),
             usb: UsbParts { bus, unique_id },
             flash: Flash::new(FLASH_BYTES),
             unique_id,

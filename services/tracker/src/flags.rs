@@ -25,6 +25,8 @@ pub(crate) enum Flag {
     AltitudeHold,
     Approach,
     Lnav,
+    /// Which of two alternating turns of the second has closed its last one: see `table`.
+    Turn,
 }
 
 /// All of them.

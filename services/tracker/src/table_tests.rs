@@ -295,6 +295,43 @@ fn four_hundred_aircraft_at_the_channels_rate_keep_their_places() {
     assert_balanced(&tracker);
 }
 
+#[test]
+fn a_turn_in_slices_ends_each_second_once_whoever_leaves_meanwhile() {
+    // Slices of one, places for four, and frames of newcomers between the slices that displace the silent ones: those that are heard once a second
+    // must tell one frame after every turn.
+    for slice in 1..4 {
+        let mut tracker = Tracker::<4>::new();
+        // They stand first, so that those who stay are at the end and move.
+        hear(&mut tracker, &all_call(0x50), 0);
+        hear(&mut tracker, &all_call(0x51), 0);
+        let mut newcomer = 0x100;
+        for second in 1..60u64 {
+            let now_ms = second * 4_000;
+            for steady in [1, 2] {
+                hear(&mut tracker, &all_call(steady), now_ms - 500);
+            }
+            tracker.begin_second(now_ms);
+            let mut later_ms = now_ms;
+            while tracker.go_on(slice) {
+                later_ms += 8;
+                newcomer += 1;
+                hear(&mut tracker, &all_call(newcomer), later_ms);
+            }
+            for steady in [1, 2] {
+                let aircraft = tracker.find(icao(steady)).unwrap();
+                assert_eq!(aircraft.counts_last_second().mode_s, 1, "{second} {slice}");
+            }
+            assert!(
+                tracker
+                    .aircraft()
+                    .all(|one| one.flags.has(Flag::Turn) == tracker.turn)
+            );
+        }
+        assert!(tracker.counters().displaced > 50);
+        assert_balanced(&tracker);
+    }
+}
+
 /// One step of the model test.
 #[derive(Clone, Copy, Debug)]
 enum Step {
@@ -336,7 +373,8 @@ proptest! {
                 }
                 Step::Seconds(seconds) => {
                     now += seconds * 1_000;
-                    tracker.each_second(now);
+                    tracker.begin_second(now);
+                    while tracker.go_on(3) {}
                     model.retain(|_, heard| now - *heard <= u64::from(TIMEOUT_MS));
                 }
             }
