@@ -68,6 +68,11 @@ impl Confirm {
         self.running.as_ref().map(|(slot, _)| *slot)
     }
 
+    /// The header of the image that runs.
+    pub fn header(&self) -> Option<&Header> {
+        self.running.as_ref().map(|(_, header)| header)
+    }
+
     /// Whether the image is confirmed.
     pub fn is_confirmed(&self) -> bool {
         self.standing == Some(Standing::Confirmed)

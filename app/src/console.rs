@@ -3,7 +3,7 @@
 //! A reply is one or more whole lines with `\r\n`; like every message it is dropped and counted when the port has no room.
 
 use crate::port::{Outlet, Port};
-use crate::receiver::Receiver;
+use crate::receiver::{Receiver, UsbDrive};
 use boot_contract::hand_over::{Cause, HandOver};
 use core::fmt::{self, Write};
 use hal::usb::{PACKET, UsbConsole};
@@ -121,11 +121,35 @@ pub fn answer(command: Result<Request, Refusal>, receiver: &mut Receiver) {
             reply(&mut receiver.console, format_args!("{OK}"));
             receiver.reboot_soon(HandOver::Stay(Cause::Command));
         }
+        Request::Info => crate::info::tell(receiver),
+        Request::BootUsbUf2 if receiver.usb_drive == UsbDrive::Enabled => {
+            reply(&mut receiver.console, format_args!("{OK}"));
+            receiver.usb_drive_soon();
+        }
+        Request::BootUsbUf2 => reply(
+            &mut receiver.console,
+            format_args!("ERROR not enabled, AT+BOOT_USB_UF2=1 does that"),
+        ),
+        Request::QueryBootUsbUf2 => {
+            let enabled = u8::from(receiver.usb_drive == UsbDrive::Enabled);
+            reply(
+                &mut receiver.console,
+                format_args!("+BOOT_USB_UF2={enabled}"),
+            );
+        }
+        Request::EnableBootUsbUf2(enable) => {
+            receiver.usb_drive = if enable {
+                UsbDrive::Enabled
+            } else {
+                UsbDrive::Disabled
+            };
+            reply(&mut receiver.console, format_args!("{OK}"));
+        }
     }
 }
 
 /// One reply line.
-fn reply<O: Outlet>(port: &mut Port<O>, text: fmt::Arguments<'_>) {
+pub fn reply<O: Outlet>(port: &mut Port<O>, text: fmt::Arguments<'_>) {
     let mut line = heapless::String::<MAX_REPLY>::new();
     match write!(line, "{text}\r\n") {
         Ok(()) => port.message(line.as_bytes()),

@@ -12,7 +12,9 @@
 //!
 //! Defaults until settings exist: CONSOLE reports CSBEE, COMMS_UART BEAST at 115200 8N1, trigger level 1300 mV.
 //!
-//! Not here yet: settings, CONFIGURATION, GNSS and PPS, automatic trigger level, crash record.
+//! How the image ended is kept over the reset and told by `AT+INFO` (`crash`).
+//!
+//! Not here yet: settings, CONFIGURATION, GNSS and PPS, automatic trigger level.
 #![no_std]
 #![no_main]
 #![forbid(unsafe_code)]
@@ -20,6 +22,8 @@
 mod confirm;
 mod console;
 mod core1;
+mod crash;
+mod info;
 mod port;
 mod receiver;
 mod reports;
@@ -30,16 +34,18 @@ use confirm::{Confirm, Due};
 use console::Console;
 use core::sync::atomic::Ordering;
 use core1::{Context, QUEUE_SLOTS, QueueCounters};
+use crash::Crash;
 use demod::{Counters, Demodulator, RawFrame, SampleRing};
 use drivers::led::Led;
 use drivers::pulse_capture::{CaptureCounters, PulseCapture};
 use drivers::trigger_level::{self, TriggerLevel};
+use hal::kept::{End, LastWords};
 use hal::parts::TRIGGER_LEVEL_PERIOD;
 use hal::take_once::TakeOnce;
 use hal::{Parts, sleep, timer, watchdog};
 use heapless::spsc::Queue;
 use port::Port;
-use receiver::{AIRCRAFT, Receiver, SharedCounters};
+use receiver::{AIRCRAFT, Receiver, SharedCounters, UsbDrive};
 use reports::Reports;
 use shell::Protocol;
 use stats::DecodeCounters;
@@ -121,12 +127,17 @@ fn start() -> Option<core::convert::Infallible> {
         second_ends_us: 1_000_000,
         is_ending_second: false,
         last: (0, 0),
-        reboot: None,
+        leave: None,
         confirm: Confirm::new(parts.flash),
+        unique_id: parts.unique_id,
+        crash: Crash::at_start(cause),
+        usb_drive: UsbDrive::Disabled,
     };
     let mut input = Console::new();
     let mut next_beat_us = timer::now_us() + BEAT_US;
-    let mut blocks_seen = 0;
+    // Before the first beat too an end shall be told.
+    receiver.life(0).keep();
+    let (mut blocks_seen, mut block_seen_us) = (0, timer::now_us());
 
     loop {
         wakes.drain();
@@ -134,8 +145,9 @@ fn start() -> Option<core::convert::Infallible> {
         let more_frames = receiver.frames(|| led.frame());
         let more_reports = receiver.reports();
         let more_bytes = receiver.commands(&mut input);
-        receiver.reboot_if_due();
+        receiver.leave_if_due();
         if receiver.confirm.serve(receiver.now_ms()) == Due::GiveUp {
+            LastWords::new(End::GaveUp).say();
             watchdog::reset(HandOver::Restart(Cause::Other).words());
         }
 
@@ -143,10 +155,12 @@ fn start() -> Option<core::convert::Infallible> {
         if now_us >= next_beat_us {
             led.beat();
             next_beat_us = next_beat(now_us, capture_start_us);
+            let stalled_ms = (now_us - block_seen_us) / 1000;
+            receiver.life(stalled_ms as u32).keep();
         }
         let blocks = SHARED.capture.blocks.load(Ordering::Relaxed);
         if blocks != blocks_seen {
-            blocks_seen = blocks;
+            (blocks_seen, block_seen_us) = (blocks, now_us);
             parts.watchdog.feed();
         }
         if !(more_frames || more_reports || more_bytes) {
@@ -167,9 +181,9 @@ fn next_beat(now_us: u64, capture_start_us: u64) -> u64 {
     capture_start_us + (uptime_us / BEAT_US + 1) * BEAT_US
 }
 
-/// Resets through the watchdog; the bootloader passes the cause on and the next start tells it. What panicked and where is not
-/// kept yet.
+/// Keeps where it happened, and resets through the watchdog; the next start tells both.
 #[panic_handler]
-fn panic(_: &core::panic::PanicInfo) -> ! {
+fn panic(info: &core::panic::PanicInfo) -> ! {
+    crash::panicked(info);
     watchdog::reset(HandOver::Restart(Cause::Panic).words())
 }

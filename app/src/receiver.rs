@@ -11,14 +11,17 @@
 use crate::confirm::Confirm;
 use crate::console::{self, Console};
 use crate::core1::QueueCounters;
+use crate::crash::{Crash, Life};
 use crate::port::Port;
 use crate::reports::Reports;
 use crate::stats::{DecodeCounters, Line, Stats};
 use boot_contract::hand_over::{Cause, HandOver};
 use core::fmt;
+use core::sync::atomic::Ordering;
 use demod::RawFrame;
 use drivers::pulse_capture::CaptureCounters;
-use hal::{timer, uart::CommsUart, usb::UsbConsole, watchdog};
+use hal::board::adsbee_1090::LED_GPIO;
+use hal::{boot, timer, uart::CommsUart, usb::UsbConsole, watchdog};
 use heapless::spsc::Consumer;
 use mode_s::Message;
 use report::Statistics;
@@ -67,9 +70,30 @@ pub struct Receiver {
     pub is_ending_second: bool,
     /// Counts at the start of the second: demodulated, decoded.
     pub last: (u32, u32),
-    /// When to restart, microseconds of the timer, and what the bootloader is told.
-    pub reboot: Option<(u64, HandOver)>,
+    /// When to leave, microseconds of the timer, and where to.
+    pub leave: Option<(u64, Leave)>,
     pub confirm: Confirm,
+    /// The flash's, which is the serial number.
+    pub unique_id: [u8; 8],
+    /// The last one since power-on.
+    pub crash: Option<Crash>,
+    pub usb_drive: UsbDrive,
+}
+
+/// How the image ends by command.
+#[derive(Clone, Copy)]
+pub enum Leave {
+    /// Restarts; the bootloader is told this.
+    Restart(HandOver),
+    /// The ROM's USB drive.
+    UsbDrive,
+}
+
+/// Whether `AT+BOOT_USB_UF2` may be obeyed: never from the start.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum UsbDrive {
+    Disabled,
+    Enabled,
 }
 
 impl Receiver {
@@ -171,15 +195,43 @@ impl Receiver {
 
     /// Restarts once the reply has had its time.
     pub fn reboot_soon(&mut self, words: HandOver) {
-        self.reboot = Some((timer::now_us() + REBOOT_AFTER_US, words));
+        self.leave_soon(Leave::Restart(words));
     }
 
-    /// Restarts if asked to and due.
-    pub fn reboot_if_due(&self) {
-        if let Some((at_us, words)) = self.reboot
-            && timer::now_us() >= at_us
-        {
-            watchdog::reset(words.words());
+    /// Ends in the ROM's USB drive, likewise.
+    pub fn usb_drive_soon(&mut self) {
+        self.leave_soon(Leave::UsbDrive);
+    }
+
+    fn leave_soon(&mut self, leave: Leave) {
+        self.leave = Some((timer::now_us() + REBOOT_AFTER_US, leave));
+    }
+
+    /// Leaves if asked to and due.
+    pub fn leave_if_due(&self) {
+        match self.leave {
+            Some((at_us, leave)) if timer::now_us() >= at_us => match leave {
+                Leave::Restart(words) => watchdog::reset(words.words()),
+                Leave::UsbDrive => boot::rom_usb_drive(LED_GPIO),
+            },
+            _ => {}
+        }
+    }
+
+    /// Where the image stands, for whoever asks after a crash.
+    pub fn life(&self, stalled_ms: u32) -> Life {
+        Life {
+            version: self
+                .confirm
+                .header()
+                .map_or([0; 4], |header| header.version),
+            uptime_ms: self.now_ms() as u32,
+            stalled_ms,
+            blocks: self.shared.capture.blocks.load(Ordering::Relaxed),
+            demodulated: self.shared.demod.snapshot().demodulated,
+            decoded: self.decode.offered,
+            dropped: self.shared.queue.dropped.load(Ordering::Relaxed),
+            tracked: self.tracker.len() as u32,
         }
     }
 

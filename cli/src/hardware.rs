@@ -25,6 +25,8 @@ Faults (--fault FAULT[=VALUE][@WHEN], may be given again):
   flips=MEMORY:RATE         random bits from then on, RATE a second on the average
   sda-low scl-low i2c-free  a line of the EEPROM's bus is held low; let go again
   eeprom-absent eeprom-busy eeprom-nack=N eeprom-good
+  hang=CORE                 core 0 or 1 executes nothing more until the next reset
+  stray=CORE:ADDRESS        the core goes on at ADDRESS (hexadecimal); a HardFault there is the image's own
   crystal-dead              the crystal stops, or never starts
   no-pps pps no-fix fix no-nmea nmea      the GNSS receiver (--gnss) loses it; has it again
   uart-noise=PORT:RATE      each bit on comms or gnss is wrong with probability RATE; 0 ends it
@@ -177,11 +179,13 @@ mod tests {
                 .replace("[=MS]", "=5")
                 .replace("MEMORY:ADDRESS.BIT", "sram:1f.0")
                 .replace("MEMORY:RATE", "flash:1")
+                .replace("CORE:ADDRESS", "1:10000000")
+                .replace("=CORE", "=1")
                 .replace("PORT:RATE", "gnss:0.5")
                 .replace("=N", "=3");
             assert!(example.parse::<Planned>().is_ok(), "{example}");
             count += 1;
         }
-        assert_eq!(count, 24);
+        assert_eq!(count, 26);
     }
 }

@@ -1,4 +1,4 @@
-//! The flash as bytes, which image runs, and the jump into one.
+//! The flash as bytes, which image runs, the jump into one, and the way to the ROM's own USB drive.
 
 use rp2040_hal::pac;
 
@@ -35,4 +35,12 @@ pub unsafe fn jump(vectors: u32) -> ! {
         (*pac::PPB::ptr()).vtor().write(|w| w.bits(vectors));
         cortex_m::asm::bootload(vectors as *const u32)
     }
+}
+
+/// Ends in the ROM's USB drive (BOOTSEL), which shows its activity on the pin `led_gpio`. It forgets nothing in flash; a power-on, or a file dropped
+/// on the drive, ends it (RP2040 datasheet, 2.8.3.1.6).
+pub fn rom_usb_drive(led_gpio: u8) -> ! {
+    // A count that ran on would end the drive after seconds.
+    crate::watchdog::stop();
+    rp2040_hal::rom_data::reset_to_usb_boot(1 << led_gpio, 0)
 }

@@ -16,6 +16,7 @@
 //! | [`sleep`] | WFI without a lost wake-up | NVIC |
 //! | [`boot`] | flash as bytes, jump into an image | XIP, VTOR |
 //! | [`flash`] | erase, program, the part's unique id | XIP_SSI and IO_QSPI, beside the ROM |
+//! | [`kept`], `hard_fault` | words that outlive a reset; a fault's place among them | SIO CPUID |
 //! | [`byte_ring`], [`take_once`] | whole messages or nothing; statics handed out once | – |
 //!
 //! Core 1 runs from SRAM alone. What it calls here is `dma_ring`, `timer`, `core1` and `pio_sampler`, which `linker/app.x`
@@ -28,6 +29,8 @@ pub mod byte_ring;
 pub mod core1;
 pub mod dma_ring;
 pub mod flash;
+mod hard_fault;
+pub mod kept;
 pub mod parts;
 pub mod pio_sampler;
 pub mod sleep;

@@ -76,10 +76,15 @@ pub fn set_hand_over_words([word, complement]: [u32; 2]) {
         .write(|w| unsafe { w.bits(complement) });
 }
 
+/// Stops the count.
+pub(crate) fn stop() {
+    registers().ctrl().modify(|_, w| w.enable().clear_bit());
+}
+
 /// Stops the count and resets the chip now, leaving `words` in scratch 2 and 3.
 pub fn reset(words: [u32; 2]) -> ! {
     // A count that ran on would cut short what the user may have asked for with BOOTSEL: the ROM's USB drive.
-    registers().ctrl().modify(|_, w| w.enable().clear_bit());
+    stop();
     reset_counting(words)
 }
 

@@ -34,6 +34,7 @@ pub fn build(packages: &[&str], environment: &[(&str, &str)]) -> Result<PathBuf,
     };
     command.arg("build").current_dir(workspace::root()?);
     command.envs(environment.iter().copied());
+    command.env("CARGO_ENCODED_RUSTFLAGS", nameless_paths()?);
     if let Toolchain::Debian = toolchain()? {
         command.arg("-Zbuild-std=core,alloc");
     }
@@ -46,6 +47,27 @@ pub fn build(packages: &[&str], environment: &[(&str, &str)]) -> Result<PathBuf,
         .arg(&target);
     workspace::run(&mut command)?;
     Ok(target.join(TARGET).join(PROFILE))
+}
+
+/// Compiler flags that take this machine's folders out of the images: panics name their source file, and a checkout elsewhere must give the
+/// same bytes. A crate of a registry is called by its own name and version.
+fn nameless_paths() -> Result<String, String> {
+    let mut flags = vec![format!(
+        "--remap-path-prefix={}=",
+        workspace::root()?.display()
+    )];
+    let home = std::env::var_os("CARGO_HOME")
+        .map(PathBuf::from)
+        .or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")))
+        .ok_or("neither CARGO_HOME nor HOME is set: where do the registry's crates lie?")?;
+    let registries = std::fs::read_dir(home.join("registry/src"));
+    for registry in registries.into_iter().flatten().flatten() {
+        flags.push(format!(
+            "--remap-path-prefix={}/=",
+            registry.path().display()
+        ));
+    }
+    Ok(flags.join("\x1f"))
 }
 
 /// Installs the target if it is missing.

@@ -21,6 +21,7 @@
 //! The two links of one release carry two headers that differ in link address, length and hashes.
 
 use crate::crc32;
+use core::fmt;
 
 /// First four bytes of a header.
 pub const MAGIC: [u8; 4] = *b"SQTR";
@@ -166,6 +167,39 @@ impl Header {
         id.copy_from_slice(&self.image_sha256[..8]);
         id
     }
+
+    /// Version and date as users read them.
+    pub fn version_text(&self) -> VersionText<'_> {
+        VersionText(self)
+    }
+
+    /// The board's name.
+    pub fn board_name(&self) -> &str {
+        board_name(&self.board)
+    }
+}
+
+/// The zero-padded name as text.
+pub fn board_name(board: &[u8; 16]) -> &str {
+    let length = board.iter().position(|&byte| byte == 0).unwrap_or(16);
+    core::str::from_utf8(&board[..length]).unwrap_or("?")
+}
+
+/// A header's version as `a.b.c.d (Mon D YYYY)`.
+pub struct VersionText<'a>(&'a Header);
+
+impl fmt::Display for VersionText<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        const MONTHS: [&str; 12] = [
+            "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
+        ];
+        let [a, b, c, d] = self.0.version;
+        let date = self.0.date;
+        let month = MONTHS
+            .get(usize::from(date.month).wrapping_sub(1))
+            .unwrap_or(&"?");
+        write!(f, "{a}.{b}.{c}.{d} ({month} {} {})", date.day, date.year)
+    }
 }
 
 /// `N` bytes at `at`, which every caller keeps inside the header.
@@ -183,6 +217,7 @@ fn word(bytes: &[u8; LEN], at: usize) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::string::ToString;
 
     fn sample() -> Header {
         Header {
@@ -220,6 +255,13 @@ mod tests {
             bad[bit / 8] ^= 1 << (bit % 8);
             assert!(Header::decode(&bad).is_err(), "bit {bit}");
         }
+    }
+
+    #[test]
+    fn version_and_board_read_as_users_expect() {
+        let header = sample();
+        assert_eq!(header.version_text().to_string(), "0.1.0.7 (Nov 24 2026)");
+        assert_eq!(header.board_name(), "adsbee_1090");
     }
 
     #[test]

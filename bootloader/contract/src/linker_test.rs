@@ -60,4 +60,6 @@ fn both_scripts_stay_inside_sram() {
     assert_eq!(x, SRAM_BASE + 256 * 1024);
     assert_eq!(y, x + x_len);
     assert_eq!(y + y_len, SRAM_END);
+    // What outlives a reset lies in the same place for both.
+    assert_eq!(region(BOOTLOADER_X, "SCRATCH_X"), (x, x_len));
 }

@@ -19,7 +19,7 @@ use crate::update::{Update, UpdateError};
 use crate::verifier::Verifier;
 use crate::ymodem::{Event, Receiver};
 use boot_contract::boot_log::{SlotName, Standing};
-use boot_contract::header::Header;
+use boot_contract::header::board_name;
 use boot_contract::log_store::BootLog;
 use core::fmt::{self, Write};
 use embedded_storage::nor_flash::NorFlash;
@@ -256,7 +256,7 @@ impl<'a> Session<'a> {
             Ok(header) => say(
                 machine,
                 port,
-                format_args!("AT+FIRMWARE_VERSION={}\r\n", Version(&header)),
+                format_args!("AT+FIRMWARE_VERSION={}\r\n", header.version_text()),
             ),
             Err(reason) => self.fail(machine, port, reason.reason()),
         }
@@ -268,7 +268,7 @@ impl<'a> Session<'a> {
             let letter = name.letter();
             match verified[name.index()] {
                 Ok(header) => {
-                    let version = Version(&header);
+                    let version = header.version_text();
                     let standing = match self.log.state().standing(name, header.image_id()) {
                         None => "not logged",
                         Some(Standing::Pending) => "pending",
@@ -387,29 +387,6 @@ impl<'a> Session<'a> {
             self.fail(machine, port, "nothing was sent");
         }
     }
-}
-
-/// A header's version as `a.b.c.d (Mon D YYYY)`.
-struct Version<'a>(&'a Header);
-
-impl fmt::Display for Version<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        const MONTHS: [&str; 12] = [
-            "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
-        ];
-        let [a, b, c, d] = self.0.version;
-        let date = self.0.date;
-        let month = MONTHS
-            .get(usize::from(date.month).wrapping_sub(1))
-            .unwrap_or(&"?");
-        write!(f, "{a}.{b}.{c}.{d} ({month} {} {})", date.day, date.year)
-    }
-}
-
-/// The zero-padded name as text.
-fn board_name(board: &[u8; 16]) -> &str {
-    let length = board.iter().position(|&byte| byte == 0).unwrap_or(16);
-    core::str::from_utf8(&board[..length]).unwrap_or("?")
 }
 
 /// Sends formatted text, in pieces as they are made.

@@ -30,6 +30,9 @@ use rp2040_hal::gpio::{
 /// GPIO of PULSES: the PIO program's input base.
 pub const PULSES_GPIO: u8 = 19;
 
+/// GPIO of the status LED.
+pub const LED_GPIO: u8 = 15;
+
 /// Status LED, high = on.
 pub type Led = Pin<Gpio15, FunctionSioOutput, PullNone>;
 /// BOOT/CONFIG, low = held.

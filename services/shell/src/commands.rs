@@ -7,6 +7,8 @@
 //! | `PROTOCOL` | | protocol of each interface | `<iface>,<protocol>` |
 //! | `BAUDRATE`, alias `BAUD_RATE` | | actual rates | `<iface>,<rate>` |
 //! | `REBOOT` | restarts the device | | |
+//! | `INFO` | what the device is, what runs, its last crash | | |
+//! | `BOOT_USB_UF2` | ends in the ROM's USB drive, if enabled | whether it is | `1` enables it until the next start, `0` takes that back |
 
 use crate::command::{Command, Kind, arguments};
 use crate::ports::{HIGHEST_BAUD, LOWEST_BAUD, Port, Protocol, Uart};
@@ -41,6 +43,14 @@ pub enum Request {
     Reboot,
     /// `AT+REBOOT_BOOTLOADER`
     RebootBootloader,
+    /// `AT+INFO`
+    Info,
+    /// `AT+BOOT_USB_UF2`
+    BootUsbUf2,
+    /// `AT+BOOT_USB_UF2?`
+    QueryBootUsbUf2,
+    /// `AT+BOOT_USB_UF2=<0|1>`
+    EnableBootUsbUf2(bool),
 }
 
 /// One row of the table.
@@ -51,7 +61,7 @@ struct Row {
     request: fn(Kind<'_>) -> Result<Request, Refusal>,
 }
 
-static TABLE: [Row; 6] = [
+static TABLE: [Row; 8] = [
     Row {
         name: "HELP",
         alias: None,
@@ -88,6 +98,18 @@ static TABLE: [Row; 6] = [
         help: "Restarts into the bootloader, which then stays until AT+LOCK=0.",
         request: |kind| bare(kind, Request::RebootBootloader),
     },
+    Row {
+        name: "INFO",
+        alias: None,
+        help: "Tells what the device is, what runs and why it started, and its last crash.",
+        request: |kind| bare(kind, Request::Info),
+    },
+    Row {
+        name: "BOOT_USB_UF2",
+        alias: None,
+        help: "Ends in the chip's own USB drive, once AT+BOOT_USB_UF2=1 has enabled that; it forgets who may sign firmware.",
+        request: boot_usb_uf2,
+    },
 ];
 
 /// The request of a line without its end.
@@ -118,6 +140,16 @@ fn query(kind: Kind<'_>, request: Request) -> Result<Request, Refusal> {
         Kind::Query => Ok(request),
         Kind::Bare => Err(Refusal::NotBare),
         Kind::Set(_) => Err(Refusal::NoSet),
+    }
+}
+
+fn boot_usb_uf2(kind: Kind<'_>) -> Result<Request, Refusal> {
+    match kind {
+        Kind::Bare => Ok(Request::BootUsbUf2),
+        Kind::Query => Ok(Request::QueryBootUsbUf2),
+        Kind::Set("0") => Ok(Request::EnableBootUsbUf2(false)),
+        Kind::Set("1") => Ok(Request::EnableBootUsbUf2(true)),
+        Kind::Set(_) => Err(Refusal::NotABit),
     }
 }
 

@@ -25,6 +25,11 @@ fn every_request() {
         ("AT+BAUDRATE?", Request::QueryBaudRate),
         ("AT+BAUD_RATE?", Request::QueryBaudRate),
         ("AT+REBOOT", Request::Reboot),
+        ("AT+INFO", Request::Info),
+        ("AT+BOOT_USB_UF2", Request::BootUsbUf2),
+        ("AT+BOOT_USB_UF2?", Request::QueryBootUsbUf2),
+        ("AT+BOOT_USB_UF2=1", Request::EnableBootUsbUf2(true)),
+        ("AT+BOOT_USB_UF2=0", Request::EnableBootUsbUf2(false)),
         (
             "AT+PROTOCOL=CONSOLE,NONE",
             Request::SetProtocol {
@@ -95,6 +100,8 @@ fn every_refusal() {
         ("AT+HELP?", Refusal::NoQuery),
         ("AT+STATS??", Refusal::NoQuery),
         ("AT+REBOOT=1", Refusal::NoSet),
+        ("AT+BOOT_USB_UF2=2", Refusal::NotABit),
+        ("AT+BOOT_USB_UF2=", Refusal::NotABit),
         ("AT+STATS=1", Refusal::NoSet),
         ("AT+STATS", Refusal::NotBare),
         ("AT+PROTOCOL", Refusal::NotBare),

@@ -28,6 +28,8 @@ pub enum Refusal {
     NotANumber,
     /// A baud rate outside the range.
     BaudRateRange,
+    /// Neither 0 nor 1.
+    NotABit,
 }
 
 impl fmt::Display for Refusal {
@@ -49,6 +51,7 @@ impl fmt::Display for Refusal {
                     .try_for_each(|protocol| write!(f, " {}", protocol.name()))
             }
             Refusal::NotANumber => f.write_str("not a whole number"),
+            Refusal::NotABit => f.write_str("0 or 1"),
             Refusal::BaudRateRange => {
                 write!(f, "baud rate must be {LOWEST_BAUD} to {HIGHEST_BAUD}")
             }

@@ -90,7 +90,9 @@ mod tests {
                 "PROTOCOL",
                 "BAUDRATE",
                 "REBOOT",
-                "REBOOT_BOOTLOADER"
+                "REBOOT_BOOTLOADER",
+                "INFO",
+                "BOOT_USB_UF2"
             ]
         );
         let (_, help) = help_lines().find(|(name, _)| *name == "BAUDRATE").unwrap();

@@ -132,6 +132,8 @@ impl Board {
                 Some(eeprom) => eeprom.defect = defect,
                 None => return Err(self.lacks("EEPROM")),
             },
+            Fault::Hang { core } => self.chip.hang(core),
+            Fault::Stray { core, address } => self.chip.stray(core, address),
             Fault::CrystalDead => self.chip.bus.stop_crystal(),
             Fault::Pps(present) => self.gnss_outage(present, |o| &mut o.pps)?,
             Fault::Fix(present) => self.gnss_outage(present, |o| &mut o.fix)?,

@@ -8,6 +8,7 @@
 //! cycle. When both sleep, time jumps from event to event. Nothing depends on the host's clock: the same input gives the same cycles.
 
 pub mod adc;
+mod astray;
 pub mod bus;
 mod clocks;
 pub mod cpu;

@@ -160,6 +160,12 @@ impl Chip {
             b"R3" => (Some(a[0].reverse_bits()), 0),
             b"L3" => (Some(a[0].leading_zeros()), 0),
             b"T3" => (Some(a[0].trailing_zeros()), 0),
+            b"UB" => {
+                return Err(Fault::UsbDrive {
+                    led_pins: a[0],
+                    disabled: a[1],
+                });
+            }
             other => {
                 return Err(Fault::RomFunction(
                     String::from_utf8_lossy(&other[..]).into_owned(),

@@ -8,6 +8,8 @@
 //! | `flips=MEMORY:RATE` | from then on random bits, RATE a second on the average |
 //! | `sda-low` `scl-low` `i2c-free` | the line of the EEPROM's bus is held low; let go again |
 //! | `eeprom-absent` `eeprom-busy` `eeprom-nack=N` `eeprom-good` | never answers; is busy for ever; refuses byte N of each transfer; as it should |
+//! | `hang=CORE` | the core (0 or 1) executes nothing more until the next reset |
+//! | `stray=CORE:ADDRESS` | the core goes on at ADDRESS (hexadecimal); a HardFault there is the image's own to handle |
 //! | `crystal-dead` | the crystal stops, or never starts |
 //! | `no-pps` `pps` `no-fix` `fix` `no-nmea` `nmea` | the GNSS receiver loses it; has it again |
 //! | `uart-noise=PORT:RATE` | each bit of `comms` or `gnss` is wrong with probability RATE, both ways; 0 ends it |
@@ -66,6 +68,15 @@ pub enum Fault {
         scl: bool,
     },
     Eeprom(crate::board::eeprom::Defect),
+    /// A core executes nothing more until the next reset.
+    Hang {
+        core: usize,
+    },
+    /// A core goes on somewhere else.
+    Stray {
+        core: usize,
+        address: u32,
+    },
     CrystalDead,
     Pps(bool),
     Fix(bool),

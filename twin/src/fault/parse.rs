@@ -72,6 +72,13 @@ fn fault(name: &str, value: Option<&str>) -> Result<Fault, ParseError> {
         "flips" => value
             .and_then(flips)
             .ok_or_else(|| needs("MEMORY:RATE, such as sram:2.5 (a second)"))?,
+        "hang" => value
+            .and_then(core)
+            .map(|core| Fault::Hang { core })
+            .ok_or_else(|| needs("a core, 0 or 1"))?,
+        "stray" => value
+            .and_then(stray)
+            .ok_or_else(|| needs("CORE:ADDRESS, such as 0:10000000"))?,
         "eeprom-nack" => value
             .and_then(|n| n.parse().ok())
             .map(|n| Fault::Eeprom(Defect::NackAt(n)))
@@ -144,6 +151,19 @@ fn flips(value: &str) -> Option<Fault> {
     Some(Fault::Flips {
         memory: memory(memory_name)?,
         per_second: number(rate)?,
+    })
+}
+
+fn core(value: &str) -> Option<usize> {
+    value.parse().ok().filter(|core| *core < 2)
+}
+
+fn stray(value: &str) -> Option<Fault> {
+    let (which, address) = value.split_once(':')?;
+    let digits = address.strip_prefix("0x").unwrap_or(address);
+    Some(Fault::Stray {
+        core: core(which)?,
+        address: u32::from_str_radix(digits, 16).ok()?,
     })
 }
 
@@ -265,6 +285,15 @@ mod tests {
                 },
                 When::NOW,
             ),
+            ("hang=1", Fault::Hang { core: 1 }, When::NOW),
+            (
+                "stray=0:20000001@3s",
+                Fault::Stray {
+                    core: 0,
+                    address: 0x2000_0001,
+                },
+                When::Time(3_000_000_000_000),
+            ),
             ("eeprom-nack=2", Fault::Eeprom(Defect::NackAt(2)), When::NOW),
         ] {
             assert_eq!(text.parse(), planned(fault, when), "{text}");
@@ -279,6 +308,8 @@ mod tests {
             ("flip=flash:12.8", "needs a value"),
             ("flip=rom:12.1", "needs a value"),
             ("power-cut=soon", "milliseconds"),
+            ("hang=2", "needs a value"),
+            ("stray=1", "needs a value"),
             ("usb-unplug=1", "takes no value"),
             ("power-cut@noon", "is no time"),
             ("power-cut@flash:0", "is no time"),
@@ -303,6 +334,8 @@ mod tests {
                     .replace("=MS", "=5")
                     .replace("MEMORY:ADDRESS.BIT", "eeprom:1f.0")
                     .replace("MEMORY:RATE", "flash:1")
+                    .replace("CORE:ADDRESS", "1:10000000")
+                    .replace("=CORE", "=1")
                     .replace("PORT:RATE", "gnss:0.5")
                     .replace("=N", "=3")
                     .replace(":N", ":3")

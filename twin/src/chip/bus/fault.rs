@@ -23,6 +23,10 @@ pub enum Fault {
     Rom { address: u32 },
     #[error("ROM function '{0}' is not modelled")]
     RomFunction(String),
+    #[error(
+        "the mask ROM's USB drive (BOOTSEL), where the image went by itself: the twin ends there (activity on pins {led_pins:#x}, interfaces off {disabled})"
+    )]
+    UsbDrive { led_pins: u32, disabled: u32 },
     #[error("boot2 fails its CRC-32: the flash holds no bootable image")]
     Boot2,
     #[error("core {core} is in HardFault at {pc:#010x}: {cause}")]
