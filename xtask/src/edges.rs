@@ -5,6 +5,7 @@
 //! | `services/*` | services |
 //! | `bootloader/contract` | nothing |
 //! | `bootloader/core` | the contract |
+//! | `bootloader/release` (host) | the contract, the core |
 //! | `hal` | nothing |
 //! | `drivers` | `hal` |
 //! | `bootloader` | `hal`, the contract, the core |
@@ -31,6 +32,7 @@ fn allowed(folder: &str) -> Option<&'static [&'static str]> {
         f if f.starts_with("services/") => &["services/"],
         "bootloader/contract" | "hal" => &[],
         "bootloader/core" => &["bootloader/contract"],
+        "bootloader/release" => &["bootloader/contract", "bootloader/core"],
         "drivers" => &["hal"],
         "bootloader" => &["hal", "bootloader/contract", "bootloader/core"],
         "app" => &["hal", "drivers", "services/", "bootloader/contract"],

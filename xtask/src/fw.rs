@@ -6,11 +6,12 @@
 //! ```
 //! The UF2 file holds bootloader and slot A, for a first flashing by BOOTSEL; the package (`.sqt`) holds both links, for an update.
 
-use crate::flash_image::Release;
-use crate::{elf, flash_image, hot, keys, thumb, uf2, workspace};
+use crate::{converter, hot, keys, thumb, workspace};
 use boot_contract::boot_log::SlotName;
 use boot_contract::flash_map::{BOOTLOADER_END, IMAGE_MAX};
 use boot_contract::header::Date;
+use release::package::{self, Package, Release};
+use release::{elf, flash_image, uf2};
 use std::process::Command;
 
 /// Name of the combined file.
@@ -25,12 +26,12 @@ const SRAM: u32 = 264 * 1024;
 /// Builds, checks and writes the images.
 pub fn run() -> Result<(), String> {
     let signer = keys::signing()?;
-    let public = keys::public_hex(&signer);
+    let public = keys::accepted(&signer)?;
     let images = workspace::images()?;
     std::fs::create_dir_all(&images).map_err(|error| format!("{}: {error}", images.display()))?;
     // A refused image must not leave older files beside newer ELFs.
-    let (uf2, package) = (images.join(UF2), images.join(PACKAGE));
-    for old in [&uf2, &package] {
+    let (uf2, sqt) = (images.join(UF2), images.join(PACKAGE));
+    for old in [&uf2, &sqt] {
         if old.exists() {
             std::fs::remove_file(old).map_err(|error| format!("{}: {error}", old.display()))?;
         }
@@ -62,14 +63,13 @@ pub fn run() -> Result<(), String> {
         counter: SECURITY_COUNTER,
         date: date()?,
     };
-    let signed = [(SlotName::A, app), (SlotName::B, app_b)]
-        .map(|(slot, image)| flash_image::sign(slot, image, &release, &signer));
-    let [slot_a, slot_b] = signed;
-    let (slot_a, slot_b) = (slot_a?, slot_b?);
-    let parts = flash_image::compose(bootloader, &slot_a)?;
-    uf2::write(&uf2, bootloader.entry, &parts)?;
-    std::fs::write(&package, flash_image::package(&slot_a, &slot_b))
-        .map_err(|error| format!("{}: {error}", package.display()))?;
+    let slot_a = package::link(SlotName::A, app, &release)?;
+    let slot_b = package::link(SlotName::B, app_b, &release)?;
+    let signed = Package([slot_a, slot_b]).sign(&signer)?;
+    let parts = flash_image::compose(bootloader, &signed.0[0])?;
+    uf2::write(&converter::program()?, &uf2, bootloader.entry, &parts)?;
+    std::fs::write(&sqt, signed.to_bytes())
+        .map_err(|error| format!("{}: {error}", sqt.display()))?;
 
     print_sizes("bootloader", bootloader, BOOTLOADER_END);
     print_sizes("app", app, IMAGE_MAX);

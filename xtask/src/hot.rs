@@ -8,8 +8,8 @@
 //! Code in SRAM reaches flash only through such words: a branch spans 16 MiB, flash and SRAM are 256 MiB apart. Data words are told
 //! from instructions by the ELF's mapping symbols. What this cannot see is an address that is computed; the twin counts accesses.
 
-use crate::elf::{Image, Section};
 use boot_contract::flash_map::XIP_BASE;
+use release::elf::{Image, Section};
 
 /// Parts of names, in either mangling, that must not stand in flash.
 const HOT_NAMES: [&str; 3] = ["5demod", "3app5core1", "13pulse_capture4wait"];
@@ -170,7 +170,7 @@ fn owner(app: &Image, address: u32) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::elf::Symbol;
+    use release::elf::Symbol;
 
     /// An app with one hot function whose literal is `literal`, and flash with a panic, a table and a location.
     fn app(literal: u32) -> Image {

@@ -9,14 +9,14 @@
 //! | `size` | flash and RAM by crate and layer against the committed budget |
 //! | `bench` | a benchmark; its last line is `result: key=value ...` |
 //!
-//! One file a command; what commands share has a file of its own (`thumb`, `elf`, `keys`, `flash_image`, `uf2`, `hot`, `workspace`).
+//! One file a command; what commands share has a file of its own (`thumb`, `keys`, `converter`, `hot`, `workspace`); what `squitter` shares too is the
+//! crate `release`.
 
 mod bench;
 mod check;
+mod converter;
 mod demo;
 mod edges;
-mod elf;
-mod flash_image;
 mod fw;
 mod golden;
 mod hot;
@@ -25,7 +25,6 @@ mod peers;
 mod size;
 mod test;
 mod thumb;
-mod uf2;
 mod workspace;
 
 use std::process::ExitCode;

@@ -6,7 +6,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::{elf, workspace};
+use crate::workspace;
+use release::elf;
 
 /// Start of SRAM in the address map.
 const SRAM: u32 = 0x2000_0000;

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::{elf, thumb, workspace};
+use crate::{thumb, workspace};
+use release::elf;
 
 /// The images of `tests/peer-images`.
 const IMAGES: [&str; 5] = ["timer", "gpio", "uart", "capture", "usb"];

@@ -8,16 +8,11 @@
 //! ```
 
 use crate::elf::{Image, Load};
-use boot_contract::boot_log::SlotName;
-use boot_contract::flash_map::{
-    BOOT_LOG, BOOTLOADER_END, HEADER_AREA, IMAGE_MAX, SLOT_A, XIP_BASE,
-};
-use boot_contract::header::{self, Date, Header};
-use boot_contract::{BOARD_ADSBEE_1090, crc32};
-use boot_core::keys::{Keys, key_id};
-use boot_core::slot::{ImageCheck, Terms};
-use ed25519_compact::KeyPair;
-use sha2::{Digest, Sha256};
+use crate::keys::Public;
+use crate::package::Linked;
+use boot_contract::flash_map::{BOOT_LOG, BOOTLOADER_END, HEADER_AREA, SLOT_A, XIP_BASE};
+use boot_contract::header::KeyId;
+use boot_core::keys::{PUBLIC_KEY, key_id};
 
 /// Bytes that a UF2 block programs.
 pub const PAGE: usize = 256;
@@ -53,72 +48,8 @@ pub fn contiguous(name: &str, image: &Image, base: u32, end: u32) -> Result<Vec<
     Ok(bytes)
 }
 
-/// What a header says beside the image.
-pub struct Release {
-    pub version: [u8; 4],
-    pub counter: u32,
-    pub date: Date,
-}
-
-/// An image with its signed header.
-pub struct SignedImage {
-    pub header: [u8; header::LEN],
-    pub image: Vec<u8>,
-}
-
-/// Signs the image of a slot. The result is checked by the bootloader's own code before it is returned.
-pub fn sign(
-    slot: SlotName,
-    app: &Image,
-    release: &Release,
-    signer: &KeyPair,
-) -> Result<SignedImage, String> {
-    let place = slot.slot();
-    let link_address = place.link_address();
-    let image = contiguous("app", app, link_address, link_address + IMAGE_MAX)?;
-    let public = *signer.pk;
-    let fields = Header {
-        board: BOARD_ADSBEE_1090,
-        link_address,
-        image_length: image.len() as u32,
-        version: release.version,
-        counter: release.counter,
-        image_sha256: Sha256::digest(&image).into(),
-        image_crc: crc32(&image),
-        key: key_id(&public),
-        date: release.date,
-    };
-    let header = fields.with_signature(&signer.sk.sign(fields.encode(), None));
-    let terms = Terms {
-        board: BOARD_ADSBEE_1090,
-        keys: Keys(&[public]),
-        floor: 0,
-    };
-    terms
-        .check_header(place, &header)
-        .and_then(|decoded| {
-            let mut check = ImageCheck::new(decoded);
-            check.take(&image);
-            check.verdict()
-        })
-        .map_err(|refusal| format!("the bootloader would refuse this app: {}", refusal.reason()))?;
-    Ok(SignedImage { header, image })
-}
-
-/// The update package: both links.
-pub fn package(slot_a: &SignedImage, slot_b: &SignedImage) -> Vec<u8> {
-    [
-        &boot_core::package::MAGIC[..],
-        &slot_a.header,
-        &slot_b.header,
-        &slot_a.image,
-        &slot_b.image,
-    ]
-    .concat()
-}
-
 /// The flash's parts for a first flashing, each padded to whole sectors.
-pub fn compose(bootloader: &Image, app: &SignedImage) -> Result<Vec<Load>, String> {
+pub fn compose(bootloader: &Image, app: &Linked) -> Result<Vec<Load>, String> {
     let boot = contiguous(
         "bootloader",
         bootloader,
@@ -146,6 +77,17 @@ pub fn compose(bootloader: &Image, app: &SignedImage) -> Result<Vec<Load>, Strin
             bytes: padded(app.image.clone()),
         },
     ])
+}
+
+/// The public key of this name, if the bootloader holds it: without it, it would refuse to start what is flashed beside it.
+pub fn bootloader_knows(bootloader: &Image, id: KeyId) -> Option<Public> {
+    let loads = bootloader.loads.iter();
+    loads
+        .flat_map(|load| load.bytes.windows(PUBLIC_KEY))
+        .find_map(|bytes| {
+            let public: Public = bytes.try_into().ok()?;
+            (key_id(&public) == id).then_some(public)
+        })
 }
 
 fn padded(mut bytes: Vec<u8>) -> Vec<u8> {

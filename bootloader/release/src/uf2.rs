@@ -5,14 +5,13 @@
 
 use crate::elf::{self, Load};
 use crate::flash_image::PAGE;
-use crate::workspace;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// The converter and its version: the one the images were checked with.
-const CONVERTER: &str = "elf2uf2-rs";
-const CONVERTER_VERSION: &str = "2.2.0";
+pub const CONVERTER: &str = "elf2uf2-rs";
+pub const CONVERTER_VERSION: &str = "2.2.0";
 const MAGIC_START: [u32; 2] = [0x0A32_4655, 0x9E5D_5157];
 const MAGIC_END: u32 = 0x0AB1_6F30;
 /// Flag "the family is present"; without it a loader takes the block for any chip.
@@ -21,46 +20,24 @@ const FAMILY_PRESENT: u32 = 0x2000;
 const FAMILY_RP2040: u32 = 0xE48B_FF56;
 const BLOCK: usize = 512;
 
-/// Writes `parts` as a UF2 file and checks it.
-pub fn write(path: &Path, entry: u32, parts: &[Load]) -> Result<(), String> {
+/// Writes `parts` as a UF2 file with the program `converter`, and checks it.
+pub fn write(converter: &Path, path: &Path, entry: u32, parts: &[Load]) -> Result<(), String> {
     let merged = path.with_extension("merged.elf");
     std::fs::write(&merged, elf::write(entry, parts))
         .map_err(|error| format!("{}: {error}", merged.display()))?;
-    workspace::run(
-        Command::new(converter()?)
-            .arg(&merged)
-            .arg(path)
-            .stdout(std::process::Stdio::null()),
-    )?;
-    let file = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    compare(&file, parts).map_err(|reason| format!("{}: {reason}", path.display()))?;
-    std::fs::remove_file(&merged).map_err(|error| format!("{}: {error}", merged.display()))
-}
-
-/// The converter, installed into the target folder on first use.
-fn converter() -> Result<PathBuf, String> {
-    let tools = workspace::target()?.join("tools");
-    let program = tools.join("bin").join(CONVERTER);
-    if !program.exists() {
-        eprintln!("xtask: installing {CONVERTER} {CONVERTER_VERSION}");
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        workspace::run(
-            Command::new(cargo)
-                .args([
-                    "install",
-                    CONVERTER,
-                    "--version",
-                    CONVERTER_VERSION,
-                    "--no-default-features",
-                    "--locked",
-                    "--root",
-                ])
-                .arg(&tools)
-                .arg("--target-dir")
-                .arg(tools.join("build")),
-        )?;
+    let converted = Command::new(converter)
+        .arg(&merged)
+        .arg(path)
+        .stdout(std::process::Stdio::null())
+        .status()
+        .map_err(|error| format!("cannot start {}: {error}", converter.display()));
+    std::fs::remove_file(&merged).map_err(|error| format!("{}: {error}", merged.display()))?;
+    let status = converted?;
+    if !status.success() {
+        return Err(format!("{}: {status}", converter.display()));
     }
-    Ok(program)
+    let file = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    compare(&file, parts).map_err(|reason| format!("{}: {reason}", path.display()))
 }
 
 /// The pages of a UF2 file by address.
