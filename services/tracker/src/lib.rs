@@ -43,6 +43,7 @@ mod table;
 #[cfg(test)]
 mod test_frames;
 mod told;
+mod unread;
 
 pub use aircraft::{Aircraft, PositionSource};
 pub use counters::{Counters, Outcome, PositionOutcome};
@@ -53,3 +54,4 @@ pub use signal::Heard;
 pub use status::{Airframe, Status};
 pub use table::{TIMEOUT_MS, Tracker};
 pub use told::Wind;
+pub use unread::{READERS, Reader, Wanted};

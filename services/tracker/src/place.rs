@@ -137,6 +137,11 @@ impl Places {
             .then_some(self.shown)
     }
 
+    /// The last place shown, however long ago.
+    pub(crate) fn last_shown(&self) -> Option<Position> {
+        (self.shown_at != Stamp::NEVER).then_some(self.shown)
+    }
+
     /// Takes an encoded position heard at `at_ms`.
     pub(crate) fn offer(
         &mut self,

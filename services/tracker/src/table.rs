@@ -29,6 +29,7 @@ use crate::nursery::{Nursery, Word, is_one_bit_from};
 use crate::recent::Recent;
 use crate::reference::{Candidate, References, RxPosition};
 use crate::signal::Heard;
+use crate::unread::{Reader, Unread, Wanted};
 use mode_s::{Address, Frame, Icao, Message, ModeACode, Parity};
 
 /// Silence after which an aircraft is no longer tracked, ms. The CSBee document's 60 s.
@@ -50,6 +51,7 @@ pub struct Tracker<const N: usize> {
     recent: Recent,
     nursery: Nursery,
     mode_ac: ModeAc,
+    unread: Unread<N>,
     last_second_ms: u64,
     /// Places below this one have not ended their second; 0 between turns.
     turn_left: usize,
@@ -72,6 +74,7 @@ impl<const N: usize> Tracker<N> {
             recent: Recent::new(),
             nursery: Nursery::new(),
             mode_ac: ModeAc::new(),
+            unread: Unread::new(),
             last_second_ms: 0,
             turn_left: 0,
             turn: false,
@@ -105,10 +108,17 @@ impl<const N: usize> Tracker<N> {
                 heard,
                 references: &self.references,
             };
-            if let Some(position) = aircraft.hear(&hearing) {
-                self.counters.count_position(position);
-                if position == PositionOutcome::Shown
-                    && aircraft.on_ground() == Some(false)
+            let before = aircraft.places.last_shown();
+            let position = aircraft.hear(&hearing);
+            self.unread.heard(place);
+            if let Some(outcome) = position {
+                self.counters.count_position(outcome);
+            }
+            if position == Some(PositionOutcome::Shown) {
+                if aircraft.places.last_shown() != before {
+                    self.unread.position(place);
+                }
+                if aircraft.on_ground() == Some(false)
                     && let Some(place) = aircraft.position(heard.at_ms)
                 {
                     self.references.shown_in_the_air(place, heard.at_ms);
@@ -197,6 +207,41 @@ impl<const N: usize> Tracker<N> {
     /// The tracked aircraft, in no particular order.
     pub fn aircraft(&self) -> impl Iterator<Item = &Aircraft> {
         self.aircraft[..self.index.len()].iter()
+    }
+
+    /// The aircraft at a place, which is its own until another leaves.
+    pub fn at(&self, place: usize) -> Option<&Aircraft> {
+        self.aircraft[..self.len()].get(place)
+    }
+
+    /// The first aircraft that a reader wants, from a place on and then from the beginning.
+    pub fn next_unread(&self, reader: Reader, wanted: Wanted, from: usize) -> Option<usize> {
+        self.unread.find(reader, wanted, from, self.len())
+    }
+
+    /// How many a reader wants.
+    pub fn count_unread(&self, reader: Reader, wanted: Wanted) -> usize {
+        self.unread.count(reader, wanted, self.len())
+    }
+
+    /// The aircraft at a place was read.
+    pub fn read(&mut self, place: usize, reader: Reader) {
+        self.unread.read(place, reader);
+    }
+
+    /// A reader begins a round: nobody was read in it yet.
+    pub fn begin_round(&mut self, reader: Reader) {
+        self.unread.begin_round(reader);
+    }
+
+    /// Whether an aircraft may have moved since the reader last said that it knows all positions.
+    pub fn has_moved(&self, reader: Reader) -> bool {
+        self.unread.has_moved(reader)
+    }
+
+    /// The reader has found nobody who [`Wanted::Moved`] names.
+    pub fn none_moved(&mut self, reader: Reader) {
+        self.unread.none_moved(reader);
     }
 
     /// The aircraft with this address.
@@ -288,6 +333,7 @@ impl<const N: usize> Tracker<N> {
         let place = self.index.push(address);
         self.aircraft[place] = Aircraft::new(address, at_ms);
         self.aircraft[place].flags.set(Flag::Turn, self.turn);
+        self.unread.born(place);
         Some(place)
     }
 
@@ -298,6 +344,7 @@ impl<const N: usize> Tracker<N> {
             self.aircraft[last].address(),
         );
         self.index.remove(place, leaving, moving);
+        self.unread.moves(last, place);
         self.aircraft[place] = self.aircraft[last];
     }
 }
