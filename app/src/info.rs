@@ -25,7 +25,7 @@ pub fn tell(receiver: &mut Receiver) {
     } else {
         "on trial"
     };
-    let port = &mut receiver.console;
+    let port = &mut receiver.console.port;
     if let Some(header) = header {
         reply(port, format_args!("Device: {}", header.board_name()));
     }

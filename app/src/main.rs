@@ -24,9 +24,8 @@ mod console;
 mod core1;
 mod crash;
 mod info;
-mod port;
+mod outlets;
 mod receiver;
-mod reports;
 mod stats;
 
 use boot_contract::hand_over::{Cause, HandOver};
@@ -44,10 +43,10 @@ use hal::parts::TRIGGER_LEVEL_PERIOD;
 use hal::take_once::TakeOnce;
 use hal::{Parts, sleep, timer, watchdog};
 use heapless::spsc::Queue;
-use port::Port;
 use receiver::{AIRCRAFT, Receiver, SharedCounters, UsbDrive};
-use reports::Reports;
-use shell::Protocol;
+use reporter::Reporter;
+use settings::Settings;
+use settings::choices::Protocol;
 use stats::DecodeCounters;
 use tracker::Tracker;
 
@@ -110,10 +109,9 @@ fn start() -> Option<core::convert::Infallible> {
     let mut wakes = parts.core1.launch(context, core1::run);
 
     let mut receiver = Receiver {
-        console: Port::new(console),
-        console_reports: Reports::new(Protocol::Csbee),
-        comms: Port::new(parts.comms_uart),
-        comms_reports: Reports::new(Protocol::Beast),
+        console: Reporter::new(settings::Port::Console, outlets::Console(console)),
+        comms: Reporter::new(settings::Port::CommsUart, outlets::Comms(parts.comms_uart)),
+        settings: Settings::FACTORY,
         queue: consumer,
         tracker: TRACKER.take()?,
         shared: &SHARED,
@@ -133,6 +131,10 @@ fn start() -> Option<core::convert::Infallible> {
         crash: Crash::at_start(cause),
         usb_drive: UsbDrive::Disabled,
     };
+    // Until settings are stored.
+    receiver.settings.console.set_protocol(Protocol::Csbee);
+    receiver.settings.comms_uart.set_protocol(Protocol::Beast);
+    receiver.apply();
     let mut input = Console::new();
     let mut next_beat_us = timer::now_us() + BEAT_US;
     // Before the first beat too an end shall be told.
@@ -168,7 +170,7 @@ fn start() -> Option<core::convert::Infallible> {
             timer::set_alarm(look_us);
             sleep::unless(|| {
                 receiver.queue.ready()
-                    || receiver.comms.outlet.has_received()
+                    || receiver.comms.port.outlet.0.has_received()
                     || timer::now_us() >= look_us
             });
         }

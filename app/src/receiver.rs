@@ -12,8 +12,7 @@ use crate::confirm::Confirm;
 use crate::console::{self, Console};
 use crate::core1::QueueCounters;
 use crate::crash::{Crash, Life};
-use crate::port::Port;
-use crate::reports::Reports;
+use crate::outlets;
 use crate::stats::{DecodeCounters, Line, Stats};
 use boot_contract::hand_over::{Cause, HandOver};
 use core::fmt;
@@ -21,10 +20,12 @@ use core::sync::atomic::Ordering;
 use demod::RawFrame;
 use drivers::pulse_capture::CaptureCounters;
 use hal::board::adsbee_1090::LED_GPIO;
-use hal::{boot, timer, uart::CommsUart, usb::UsbConsole, watchdog};
+use hal::{boot, timer, watchdog};
 use heapless::spsc::Consumer;
 use mode_s::Message;
-use report::Statistics;
+use report::{Bits, FrameReport, FrameTimes, Moment, Statistics};
+use reporter::{Port, Reporter, Second};
+use settings::Settings;
 use tracker::{Heard, Tracker};
 
 /// Aircraft tracked at once.
@@ -48,10 +49,10 @@ pub struct SharedCounters {
 
 /// Everything core 0 works with.
 pub struct Receiver {
-    pub console: Port<UsbConsole>,
-    pub console_reports: Reports,
-    pub comms: Port<CommsUart>,
-    pub comms_reports: Reports,
+    pub console: Reporter<outlets::Console>,
+    pub comms: Reporter<outlets::Comms>,
+    /// In force.
+    pub settings: Settings,
     pub queue: Consumer<'static, RawFrame>,
     pub tracker: &'static mut Tracker<AIRCRAFT>,
     pub shared: &'static SharedCounters,
@@ -123,8 +124,15 @@ impl Receiver {
                 is_repaired: raw_frame.repaired() != 0,
             };
             self.tracker.on_frame(&raw_frame.frame, &message, heard);
-            self.console_reports.frame(&mut self.console, &raw_frame);
-            self.comms_reports.frame(&mut self.comms, &raw_frame);
+            let received = raw_frame.received();
+            let report = FrameReport {
+                bits: Bits::ModeS(&received),
+                level_cdbm: raw_frame.level,
+                quality_cdb: None,
+                times: FrameTimes::at(raw_frame.arrival),
+            };
+            self.console.frame(&report, true);
+            self.comms.frame(&report, true);
         }
         self.queue.ready()
     }
@@ -141,16 +149,9 @@ impl Receiver {
             }
             return true;
         }
-        if !(self.console_reports.in_burst() || self.comms_reports.in_burst()) {
-            return false;
-        }
-        let now_ms = self.now_ms();
-        let console = self
-            .console_reports
-            .turn(&mut self.console, self.tracker, now_ms);
-        let comms = self
-            .comms_reports
-            .turn(&mut self.comms, self.tracker, now_ms);
+        let moment = Moment::at(self.now_ms());
+        let console = self.console.turn(self.tracker, &moment);
+        let comms = self.comms.turn(self.tracker, &moment);
         console | comms
     }
 
@@ -171,10 +172,18 @@ impl Receiver {
             ..Statistics::default()
         };
         self.last = (demodulated, self.decode.offered);
-        self.console_reports
-            .second(&mut self.console, self.tracker, &statistics);
-        self.comms_reports
-            .second(&mut self.comms, self.tracker, &statistics);
+        let second = Second {
+            moment: Moment::at(self.now_ms()),
+            statistics: &statistics,
+        };
+        self.console.second(self.tracker, &second);
+        self.comms.second(self.tracker, &second);
+    }
+
+    /// Puts `settings` into force on both ports.
+    pub fn apply(&mut self) {
+        self.console.apply(&self.settings);
+        self.comms.apply(&self.settings);
     }
 
     /// Answers commands; takes away what COMMS_UART received (nothing is commanded there yet). Returns whether anything moved.
@@ -186,10 +195,12 @@ impl Receiver {
             console::answer(command, self);
             moved = true;
         }
-        while self.comms.outlet.receive().is_some() {
+        while let Some(byte) = self.comms.port.outlet.0.receive() {
             self.comms_received = self.comms_received.wrapping_add(1);
+            // No command is taken here yet.
+            let _ = self.comms.heard(byte);
         }
-        self.comms.outlet.serve();
+        self.comms.port.outlet.0.serve();
         moved
     }
 
@@ -238,7 +249,7 @@ impl Receiver {
     /// Gives each line of `AT+STATS?`, with CONSOLE to send it on.
     pub fn tell_statistics(
         &mut self,
-        mut tell: impl FnMut(&mut Port<UsbConsole>, Result<Line, fmt::Error>),
+        mut tell: impl FnMut(&mut Port<outlets::Console>, Result<Line, fmt::Error>),
     ) {
         let stats = Stats {
             uptime_s: self.second,
@@ -252,13 +263,13 @@ impl Receiver {
             decode: &self.decode,
             tracker: self.tracker.counters(),
             tracked: self.tracker.len(),
-            console: self.console.counters,
-            comms_uart: self.comms.counters,
+            console: self.console.port.counters(),
+            comms_uart: self.comms.port.counters(),
             commands: self.commands,
             commands_lost: self.commands_lost,
             comms_received: self.comms_received,
-            comms_received_lost: self.comms.outlet.received_lost(),
+            comms_received_lost: self.comms.port.outlet.0.received_lost(),
         };
-        stats.lines(|line| tell(&mut self.console, line));
+        stats.lines(|line| tell(&mut self.console.port, line));
     }
 }

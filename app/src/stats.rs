@@ -8,8 +8,8 @@
 //!   +STATS=QUEUE,offered=..,queued=..,dropped=..,waiting=..
 //!   +STATS=DECODE,offered=..,exact=..,..
 //!   +STATS=TRACKER,offered=..,born=..,..        see services/tracker
-//!   +STATS=CONSOLE,offered=..,sent=..,dropped=..,bytes=..,commands=..,commands_lost=..
-//!   +STATS=COMMS_UART,offered=..,sent=..,dropped=..,bytes=..,received=..,received_lost=..
+//!   +STATS=CONSOLE,offered=..,sent=..,dropped=..,bytes=..,frames=..,frames_dropped=..,aircraft=..,..,commands=..,commands_lost=..
+//!   +STATS=COMMS_UART,the same,received=..,received_lost=..
 //! ```
 //! The sums that hold at rest (while frames arrive they may be off by what is under way):
 //!
@@ -20,18 +20,18 @@
 //! | QUEUE queued = DECODE offered + QUEUE waiting |
 //! | DECODE offered = exact + interrogator + address + broken + unjudged = TRACKER offered |
 //! | TRACKER offered = born + updated + duplicate + unknown_address + no_address + no_place + broken + not_tracked |
-//! | each port: offered = sent + dropped |
+//! | each port: offered = sent + dropped = sum over frames, aircraft, statistics, gnss and replies |
 //!
 //! All counters are 32 bits and wrap.
 
 use crate::core1::QueueCounters;
-use crate::port::PortCounters;
 use boot_contract::boot_log::SlotName;
 use boot_contract::hand_over::Cause;
 use core::fmt::{self, Write};
 use core::sync::atomic::{AtomicU32, Ordering};
 use drivers::pulse_capture::CaptureCounters;
 use mode_s::Parity;
+use reporter::{Kind, PortCounters};
 
 /// Frames taken from the queue, by what their parity says: `offered` is the sum of the rest.
 #[derive(Clone, Copy, Default)]
@@ -84,22 +84,27 @@ fn line(stage: &str, pairs: &[(&str, u32)]) -> Result<Line, fmt::Error> {
     Ok(line)
 }
 
+/// A port: all messages, then each kind that had any.
 fn port(stage: &str, counters: &PortCounters) -> Result<Line, fmt::Error> {
-    let PortCounters {
-        offered,
-        sent,
-        dropped,
-        bytes,
-    } = *counters;
-    line(
+    let total = counters.total();
+    let mut line = line(
         stage,
         &[
-            ("offered", offered),
-            ("sent", sent),
-            ("dropped", dropped),
-            ("bytes", bytes),
+            ("offered", total.offered),
+            ("sent", total.sent()),
+            ("dropped", total.dropped),
+            ("bytes", counters.bytes),
         ],
-    )
+    )?;
+    for kind in Kind::ALL {
+        let (name, counts) = (kind.name(), counters.of(kind));
+        write!(
+            line,
+            ",{name}={},{name}_dropped={}",
+            counts.offered, counts.dropped
+        )?;
+    }
+    Ok(line)
 }
 
 impl Stats<'_> {

@@ -55,15 +55,21 @@ impl<const N: usize> ByteRing<N> {
 
     /// Writer: puts the whole message in, or none of it.
     pub fn offer(&self, message: &[u8]) -> bool {
-        if message.len() > self.free() {
+        self.offer_both(&[], message)
+    }
+
+    /// Writer: the same with something in front of it.
+    pub fn offer_both(&self, head: &[u8], message: &[u8]) -> bool {
+        let length = head.len() + message.len();
+        if length > self.free() {
             return false;
         }
         let start = self.written.load(Ordering::Relaxed) as usize;
-        for (offset, &byte) in message.iter().enumerate() {
+        for (offset, &byte) in head.iter().chain(message).enumerate() {
             self.cells[start.wrapping_add(offset) & Self::MASK].store(byte, Ordering::Relaxed);
         }
         self.written.store(
-            (start as u32).wrapping_add(message.len() as u32),
+            (start as u32).wrapping_add(length as u32),
             Ordering::Release,
         );
         true

@@ -38,6 +38,7 @@ pub mod take_once;
 pub mod timer;
 pub mod uart;
 pub mod usb;
+mod usb_packet;
 pub mod watchdog;
 
 pub use parts::Parts;

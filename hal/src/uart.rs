@@ -306,6 +306,11 @@ impl<const TX: usize, const RX: usize> Uart<TX, RX> {
         }
     }
 
+    /// Bytes that were accepted and have not left the ring.
+    pub fn waiting(&self) -> usize {
+        self.to_send.len()
+    }
+
     /// Sends the whole message, or refuses it whole.
     pub fn send(&mut self, message: &[u8]) -> bool {
         let accepted = self.requested.is_none() && self.to_send.offer(message);

@@ -1,10 +1,15 @@
 //! The console's USB port: one CDC ACM function, bytes through a ring of its own.
 //!
 //! ```text
-//!   send(message) ─▶ TX ring 16 KiB ─▶ 64-byte packets ─▶ host       no host that listens (DTR), no room: refused whole
+//!   send(message) ──▶ ring 16 KiB ─┐
+//!                                  ├─▶ 64-byte packets ─▶ host       no host that listens (DTR), no room: refused whole
+//!   reply(message) ─▶ ring 4 KiB ──┘
 //!   host ─▶ 64-byte packet ─▶ poll(|byte| ..)
 //! ```
-//! A host that goes away leaves an emptied ring: the next one starts with a whole message (but for at most one packet that was
+//! Each message lies behind its length, so that replies can go first and still never stand inside another message: a reply waits for the rest of the
+//! message under way, not for the ring. Behind 16 KiB of reports it would come after more than 10 ms.
+//!
+//! A host that goes away leaves emptied rings: the next one starts with a whole message (but for at most one packet that was
 //! already in the controller). A packet of 64 bytes that ends the stream is followed by an empty one, so that the host delivers it.
 //!
 //! Bootloader and app show the same identity, so that a host gives both the same name: manufacturer, product, and as serial number the flash's
@@ -14,6 +19,7 @@
 use crate::byte_ring::ByteRing;
 use crate::flash::UNIQUE_ID;
 use crate::take_once::TakeOnce;
+use crate::usb_packet::{self, PacketBuffer};
 use rp2040_hal::usb::UsbBus;
 use usb_device::bus::UsbBusAllocator;
 use usb_device::device::{
@@ -21,8 +27,10 @@ use usb_device::device::{
 };
 use usbd_serial::{CdcAcmClass, USB_CLASS_CDC};
 
-/// Bytes of the transmit ring.
+/// Bytes of the ring of messages, two of each for its length.
 pub const TX_BYTES: usize = 16_384;
+/// Bytes of the ring of replies.
+pub const REPLY_BYTES: usize = 4096;
 /// Bytes of a bulk packet (full speed's largest).
 pub const PACKET: usize = 64;
 
@@ -35,13 +43,15 @@ const PRODUCT: &str = "Squitter 1090";
 /// Digits of the serial number: the flash's unique id.
 const SERIAL: usize = 2 * UNIQUE_ID;
 
-static TX: ByteRing<TX_BYTES> = ByteRing::new();
+static MESSAGES: ByteRing<TX_BYTES> = ByteRing::new();
+static REPLIES: ByteRing<REPLY_BYTES> = ByteRing::new();
 static SERIAL_NUMBER: TakeOnce<[u8; SERIAL]> = TakeOnce::new([b'0'; SERIAL]);
 
 /// The port.
 pub struct UsbConsole {
     device: UsbDevice<'static, UsbBus>,
     class: CdcAcmClass<'static, UsbBus>,
+    packet: PacketBuffer,
     /// The last packet was full: the host waits for more until a shorter one comes.
     owes_short_packet: bool,
 }
@@ -66,6 +76,7 @@ impl UsbConsole {
         Some(Self {
             device,
             class,
+            packet: PacketBuffer::new(),
             owes_short_packet: false,
         })
     }
@@ -77,12 +88,35 @@ impl UsbConsole {
 
     /// Bytes that a message may have right now; 0 while nobody listens.
     pub fn free(&self) -> usize {
-        if self.is_open() { TX.free() } else { 0 }
+        self.free_in(&MESSAGES)
+    }
+
+    /// Bytes of messages that wait.
+    pub fn waiting(&self) -> usize {
+        MESSAGES.len()
     }
 
     /// Sends the whole message, or refuses it whole.
     pub fn send(&mut self, message: &[u8]) -> bool {
-        self.is_open() && TX.offer(message)
+        self.is_open() && usb_packet::offer(&MESSAGES, message)
+    }
+
+    /// Bytes that a reply may have right now; 0 while nobody listens.
+    pub fn reply_free(&self) -> usize {
+        self.free_in(&REPLIES)
+    }
+
+    /// Sends a message before those that wait, or refuses it whole.
+    pub fn reply(&mut self, message: &[u8]) -> bool {
+        self.is_open() && usb_packet::offer(&REPLIES, message)
+    }
+
+    fn free_in<const N: usize>(&self, ring: &ByteRing<N>) -> usize {
+        if self.is_open() {
+            ring.free().saturating_sub(usb_packet::LENGTH_BYTES)
+        } else {
+            0
+        }
     }
 
     /// Serves the bus and moves one packet each way, each received byte into `received`. Returns whether anything moved: call
@@ -95,23 +129,25 @@ impl UsbConsole {
             packet[..count].iter().copied().for_each(received);
         }
         if self.is_open() {
-            moved |= self.send_packet(&mut packet);
+            moved |= self.send_packet();
         } else {
-            TX.consume(TX_BYTES);
+            MESSAGES.consume(TX_BYTES);
+            REPLIES.consume(REPLY_BYTES);
+            self.packet = PacketBuffer::new();
             self.owes_short_packet = false;
         }
         moved
     }
 
     /// One packet, if the controller has room for it.
-    fn send_packet(&mut self, packet: &mut [u8; PACKET]) -> bool {
-        let count = TX.peek(packet);
-        if count == 0 && !self.owes_short_packet {
+    fn send_packet(&mut self) -> bool {
+        let bytes = self.packet.fill(&REPLIES, &MESSAGES);
+        if bytes.is_empty() && !self.owes_short_packet {
             return false;
         }
-        match self.class.write_packet(&packet[..count]) {
+        match self.class.write_packet(bytes) {
             Ok(written) => {
-                TX.consume(written);
+                self.packet.sent();
                 self.owes_short_packet = written == PACKET;
                 true
             }

@@ -43,8 +43,22 @@ pub enum Wanted {
     Fresh,
     /// Not read in this round.
     Any,
+    /// Heard since it was last read.
+    Heard,
     /// At a position that this reader has not read.
     Moved,
+}
+
+impl Wanted {
+    /// Bits that are looked at, and what they must be.
+    const fn bits(self, reader: Reader) -> (u8, u8) {
+        match self {
+            Wanted::Fresh => (reader.of(READ | HEARD), reader.of(HEARD)),
+            Wanted::Any => (reader.of(READ), 0),
+            Wanted::Heard => (reader.of(HEARD), reader.of(HEARD)),
+            Wanted::Moved => (reader.of(MOVED), reader.of(MOVED)),
+        }
+    }
 }
 
 /// The bits of up to `N` aircraft by place.
@@ -98,11 +112,7 @@ impl<const N: usize> Unread<N> {
         from: usize,
         length: usize,
     ) -> Option<usize> {
-        let (mask, value) = match wanted {
-            Wanted::Fresh => (reader.of(READ | HEARD), reader.of(HEARD)),
-            Wanted::Any => (reader.of(READ), 0),
-            Wanted::Moved => (reader.of(MOVED), reader.of(MOVED)),
-        };
+        let (mask, value) = wanted.bits(reader);
         let from = from.min(length);
         let is_it = |bits: &u8| bits & mask == value;
         let (before, after) = self.bits[..length].split_at(from);
@@ -112,19 +122,9 @@ impl<const N: usize> Unread<N> {
 
     /// Places below `length` that are wanted.
     pub(crate) fn count(&self, reader: Reader, wanted: Wanted, length: usize) -> usize {
-        let mut count = 0;
-        let mut from = 0;
-        while let Some(place) = self
-            .find(reader, wanted, from, length)
-            .filter(|&place| place >= from)
-        {
-            count += 1;
-            from = place + 1;
-            if from == length {
-                break;
-            }
-        }
-        count
+        let (mask, value) = wanted.bits(reader);
+        let bits = self.bits[..length].iter();
+        bits.filter(|&bits| bits & mask == value).count()
     }
 
     pub(crate) fn has_moved(&self, reader: Reader) -> bool {
