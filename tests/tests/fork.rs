@@ -1,10 +1,12 @@
-//! A fork of a running board, with the shipped image on the air: it goes on as the first one, bit for bit and cycle for cycle, and what
-//! happens to one does not concern the other.
+//! A fork of a running board, with the shipped image on the air, and one that went through a file: each goes on as the first one, bit for bit and
+//! cycle for cycle, and what happens to one does not concern the other.
 
 use std::sync::Arc;
 
 use twin::board::{Board, Error};
+use twin::chip::pins::Again;
 use twin::front_end::{FrontEnd, Player, PulseSource};
+use twin::snapshot;
 use twin::source::{Air, AirOptions, OnAir};
 
 /// A DF11 every millisecond, over noise.
@@ -50,20 +52,56 @@ fn a_fork_goes_on_as_the_board_does() {
         .expect("capture starts");
     board.run_ms(30).expect("it runs");
     let mut fork = board.fork().expect("the source can be repeated");
-    for board in [&mut board, &mut fork] {
+    let mut file = Vec::new();
+    board.save(&mut file).expect("all its parts can be kept");
+    let again: Again = Arc::new(air);
+    let mut resumed = Board::resume(&mut file.as_slice(), Some(&again)).expect("it is whole");
+    for board in [&mut board, &mut fork, &mut resumed] {
         board.console_write(b"AT+STATS?\r\n");
     }
     for step in 0..3 {
-        board.run_ms(20).expect("it runs");
-        fork.run_ms(20).expect("it runs");
-        let (one, other) = (state(&mut board), state(&mut fork));
-        assert_eq!(one, other, "step {step}");
+        for board in [&mut board, &mut fork, &mut resumed] {
+            board.run_ms(20).expect("it runs");
+        }
+        let one = state(&mut board);
+        assert_eq!(one, state(&mut fork), "step {step}");
+        assert_eq!(one, state(&mut resumed), "step {step}, from the file");
         assert!(step > 0 || !one.5.is_empty(), "the console answered");
     }
+    let source_missing = Board::resume(&mut file.as_slice(), None);
+    assert!(matches!(
+        source_missing,
+        Err(snapshot::Error::WithoutSource)
+    ));
+    refuses_what_is_no_snapshot_of_this_build(file);
     // A word of the ring changed in one is not changed in the other.
     let before = fork.chip.bus.sram[0];
     board.chip.bus.sram[0] ^= 0xff;
     assert_eq!(fork.chip.bus.sram[0], before);
+}
+
+fn refuses_what_is_no_snapshot_of_this_build(file: Vec<u8>) {
+    let resume = |bytes: &[u8]| Board::resume(&mut &bytes[..], None).err();
+    let (head, middle) = (b"squitter twin\n".len(), file.len() / 2);
+    for cut in [
+        0,
+        head,
+        head + 16,
+        head + 17,
+        head + 24,
+        middle,
+        file.len() - 1,
+    ] {
+        assert!(resume(&file[..cut]).is_some(), "cut at {cut}");
+    }
+    let turned = |at: usize| {
+        let mut bytes = file.clone();
+        bytes[at] ^= 1;
+        resume(&bytes)
+    };
+    assert!(matches!(turned(0), Some(snapshot::Error::NotASnapshot)));
+    assert!(matches!(turned(head), Some(snapshot::Error::OtherBuild(_))));
+    assert!(matches!(turned(middle), Some(snapshot::Error::Damaged(_))));
 }
 
 #[test]
@@ -72,4 +110,6 @@ fn a_board_whose_radio_cannot_be_repeated_refuses_to_fork() {
     assert!(board.fork().is_ok(), "nothing plays");
     board.play(air()).expect("capture starts");
     assert!(matches!(board.fork(), Err(Error::Unrepeatable)));
+    let kept = board.save(&mut Vec::new());
+    assert!(matches!(kept, Err(snapshot::Error::Unkeepable(_))));
 }

@@ -15,4 +15,5 @@ pub mod front_end;
 pub mod gdb;
 pub mod image;
 pub mod native;
+pub mod snapshot;
 pub mod source;

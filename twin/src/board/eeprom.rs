@@ -18,6 +18,9 @@
 
 use crate::chip::i2c::I2cTarget;
 use crate::source::random::Random;
+use serde::{Deserialize, Serialize};
+
+use crate::snapshot::Part;
 
 /// Memory and page in bytes.
 pub const BYTES: usize = 8192;
@@ -28,7 +31,7 @@ pub const WRITE_PS: u128 = 5_000_000_000;
 pub const ENDURANCE: u32 = 4_000_000;
 
 /// What is wrong with it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Defect {
     #[default]
     None,
@@ -40,7 +43,7 @@ pub enum Defect {
     NackAt(u32),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 enum Phase {
     Idle,
     AddressHigh,
@@ -50,7 +53,7 @@ enum Phase {
 }
 
 /// A write cycle under way.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Write {
     page: usize,
     before: [u8; PAGE],
@@ -58,7 +61,7 @@ struct Write {
 }
 
 /// A write cycle that a power cut is planned in.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Watch {
     /// Its number, counted from 1.
     write: u64,
@@ -67,7 +70,7 @@ struct Watch {
 }
 
 /// The device.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Eeprom {
     address: u8,
     bytes: Vec<u8>,
@@ -269,6 +272,10 @@ impl I2cTarget for Eeprom {
 
     fn clone_box(&self) -> Box<dyn I2cTarget> {
         Box::new(self.clone())
+    }
+
+    fn part(&self) -> Option<Part> {
+        Some(Part::Eeprom(self.clone()))
     }
 }
 

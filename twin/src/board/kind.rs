@@ -18,6 +18,9 @@
 //! Source: the ADSBee's hardware facts (the project's reference notes). Assumed: FLARM's pin, one of the free ones (the receiver is an
 //! addition of ours); which of rev E's two levels is the comparator's (the high one, since `TL_SET` sets the threshold from `hi`).
 
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use crate::front_end::FrontEnd;
 
 /// A trigger level: the GPIO of its PWM, and the ADC channel that reads it back.
@@ -74,6 +77,21 @@ pub struct Kind {
     pub boot_config: u32,
     /// Detector, slicer and comparator of the revision.
     pub front_end: FrontEnd,
+}
+
+/// A board's kind is known by its name.
+impl Serialize for Kind {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        self.name.serialize(to)
+    }
+}
+
+impl<'de> Deserialize<'de> for Kind {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(from)?;
+        Self::named(&name)
+            .ok_or_else(|| D::Error::custom(format_args!("there is no board {name:?}")))
+    }
 }
 
 /// Flash of the ADSBee boards, bytes.

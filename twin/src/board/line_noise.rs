@@ -8,9 +8,10 @@
 //! start bit is read as nothing at all; a real receiver may take a later 0 for the start and give one wrong character.
 
 use crate::source::random::Random;
+use serde::{Deserialize, Serialize};
 
 /// What arrives of a character.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Heard {
     Byte(u8),
     /// With a stop bit that was not one.
@@ -19,7 +20,7 @@ pub enum Heard {
 }
 
 /// The noise of one direction of one wire.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct LineNoise {
     /// Probability that a bit is wrong.
     pub rate: f64,

@@ -7,6 +7,7 @@
 //!   crystal ────────┘                       └─ faults, planned and carried out                    faults
 //! ```
 
+use serde::{Deserialize, Serialize};
 pub mod eeprom;
 mod faults;
 pub mod gnss;
@@ -86,7 +87,7 @@ pub enum Error {
 }
 
 /// What a board is built from.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Setup {
     pub kind: Kind,
     pub crystal: Deviation,
@@ -114,7 +115,7 @@ impl Default for Setup {
 }
 
 /// A powered board.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Board {
     pub chip: Chip,
     pub kind: Kind,
@@ -133,7 +134,7 @@ pub struct Board {
 }
 
 /// Where a playback stands in the device's time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Playback {
     /// Cycle at which playback time zero falls.
     pub start_cycle: u64,

@@ -6,6 +6,9 @@
 //! 8N1 at its own rate in true time, bit by bit, so that whatever samples the pin (a PIO UART) sees the real line. The FLARM radio
 //! itself is licensed and not modelled: its sentences come from a program outside.
 
+use serde::{Deserialize, Serialize};
+
+use crate::snapshot::Part;
 use std::collections::VecDeque;
 
 use crate::chip::outside::{Outside, Wires};
@@ -14,7 +17,7 @@ use crate::chip::outside::{Outside, Wires};
 const BITS: u8 = 10;
 
 /// The sender.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct PinSerial {
     pin: u32,
     baud: u32,
@@ -97,6 +100,10 @@ impl Outside for PinSerial {
 
     fn clone_box(&self) -> Box<dyn Outside> {
         Box::new(self.clone())
+    }
+
+    fn part(&self) -> Option<Part> {
+        Some(Part::PinSerial(self.clone()))
     }
 }
 

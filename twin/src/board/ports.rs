@@ -13,6 +13,7 @@
 use super::Board;
 use super::line_noise::Heard;
 use super::pin_serial::PinSerial;
+use serde::{Deserialize, Serialize};
 
 /// Bytes that wait for a port at most when its feeder asks for room first.
 pub const QUEUE: usize = 4096;
@@ -20,7 +21,7 @@ pub const QUEUE: usize = 4096;
 const FUNCTION_UART: u32 = 2;
 
 /// The ports that have a far end outside the board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PortName {
     Console,
     Comms,

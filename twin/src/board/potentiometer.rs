@@ -10,6 +10,9 @@
 //! signal path the amplifier sits relative to its coupling, so the twin shows the wiper and leaves the front end as it is.
 
 use crate::chip::i2c::I2cTarget;
+use serde::{Deserialize, Serialize};
+
+use crate::snapshot::Part;
 
 /// Full resistance, ohms, and the greatest wiper code.
 pub const OHMS: u32 = 100_000;
@@ -18,7 +21,7 @@ pub const GREATEST: u8 = 127;
 const POWER_ON: u8 = 0x3f;
 
 /// The device.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Potentiometer {
     address: u8,
     wiper: u8,
@@ -73,6 +76,10 @@ impl I2cTarget for Potentiometer {
 
     fn clone_box(&self) -> Box<dyn I2cTarget> {
         Box::new(self.clone())
+    }
+
+    fn part(&self) -> Option<Part> {
+        Some(Part::Potentiometer(self.clone()))
     }
 }
 

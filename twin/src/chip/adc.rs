@@ -22,6 +22,9 @@
 //! Not modelled: noise, offset, and erratum RP2040-E11 (the steps at codes 512, 1536, 2560, 3584 are as wide as the others).
 
 use super::time::{Domain, Instant};
+use serde::{Deserialize, Serialize};
+
+use crate::snapshot::Part;
 use std::collections::VecDeque;
 
 /// Cycles of clk_adc a conversion takes (datasheet 4.9.2).
@@ -56,6 +59,10 @@ pub trait AnalogInput: Send {
     fn volts(&mut self, time_ps: u128) -> f64;
     /// For snapshots.
     fn clone_box(&self) -> Box<dyn AnalogInput>;
+    /// For snapshots in a file: itself as a value, if it is one of the twin's parts.
+    fn part(&self) -> Option<Part> {
+        None
+    }
 }
 
 impl Clone for Box<dyn AnalogInput> {
@@ -65,7 +72,7 @@ impl Clone for Box<dyn AnalogInput> {
 }
 
 /// A voltage that does not change.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Steady(pub f64);
 
 impl AnalogInput for Steady {
@@ -75,10 +82,14 @@ impl AnalogInput for Steady {
     fn clone_box(&self) -> Box<dyn AnalogInput> {
         Box::new(*self)
     }
+
+    fn part(&self) -> Option<Part> {
+        Some(Part::Steady(self.clone()))
+    }
 }
 
 /// The converter.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Adc {
     cs: u32,
     fcs: u32,

@@ -18,6 +18,7 @@
 //!
 //! Not modelled: jitter of the oscillator and of the PLL, the ring oscillator (it deviates as the crystal does), start-up time.
 
+use serde::{Deserialize, Serialize};
 /// True time for which the deviation is constant, picoseconds: 100 ms.
 const BLOCK_PS: i128 = 100_000_000_000;
 /// Blocks in an hour and in a day.
@@ -28,7 +29,7 @@ const BLOCKS_A_DAY: i64 = 24 * BLOCKS_AN_HOUR;
 pub const LARGEST_PPB: i64 = 1_000_000;
 
 /// A change of frequency that goes on for a time, as when a board warms up: linear, then stays.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Ramp {
     /// True time of its start, seconds.
     pub start_s: u32,
@@ -39,7 +40,7 @@ pub struct Ramp {
 }
 
 /// How a crystal deviates from 12 MHz. All parts a billion; positive is fast.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Deviation {
     /// Off from the start.
     pub offset_ppb: i64,
@@ -76,7 +77,7 @@ impl Deviation {
 }
 
 /// The relation between nominal and true time, with the block that was asked for last.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Crystal {
     deviation: Deviation,
     block: i64,

@@ -12,6 +12,7 @@
 //! A byte written to DR0 is exchanged at once. With chip select left to the SSI, a command ends where the next one begins: once its replies
 //! were taken. A program that holds chip select by IO_QSPI (SS, OUTOVER) says itself where it ends.
 
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 use super::bus::Closed;
@@ -33,10 +34,11 @@ const BAUDR: usize = 5;
 const SPI_CTRLR0: usize = 61;
 
 /// Flash contents and the serial port in front of them.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Flash {
     pub bytes: Vec<u8>,
     unique_id: [u8; 8],
+    #[serde(with = "crate::snapshot::array")]
     registers: [u32; 0x100 / 4],
     replies: VecDeque<u8>,
     serial: Serial,

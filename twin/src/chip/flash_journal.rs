@@ -1,14 +1,15 @@
 //! Erase and program operations of the flash, counted, with what each one changes: what a power cut needs to know.
 
+use serde::{Deserialize, Serialize};
 /// What an operation does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Kind {
     Erase,
     Program,
 }
 
 /// One call of the ROM's erase or program function: whole sectors or pages, one after the other.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Operation {
     /// Counted from 1 since the chip was made.
     pub number: u64,
@@ -22,7 +23,7 @@ pub struct Operation {
 }
 
 /// The last operation, and one to stop at.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Journal {
     pub count: u64,
     pub last: Option<Operation>,

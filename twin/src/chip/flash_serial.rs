@@ -18,6 +18,7 @@
 //! another one runs, as all but status reads are.
 
 use super::flash::{ERASE_SECTOR_US, PAGE, PROGRAM_PAGE_US, SECTOR};
+use serde::{Deserialize, Serialize};
 
 /// Winbond, Q family; the third byte is log2 of the size (W25Q16: 15h, W25Q128: 18h), the device of commands 90 and ab one less.
 const MAKER: u8 = 0xef;
@@ -36,14 +37,14 @@ const MODE_BITS: u8 = 0x30;
 const MODE_CONTINUOUS: u8 = 0x20;
 
 /// What a command does to the cells, once chip select has risen.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Action {
     Erase { offset: usize, len: usize, us: u64 },
     Program { offset: usize, data: Vec<u8> },
 }
 
 /// The port.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Serial {
     /// Bytes since chip select fell.
     command: Vec<u8>,

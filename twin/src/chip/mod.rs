@@ -7,6 +7,7 @@
 //! all of them to that core's own time. Interrupts reach a running core at the end of its slice; a sleeping core wakes at the exact
 //! cycle. When both sleep, time jumps from event to event. Nothing depends on the host's clock: the same input gives the same cycles.
 
+use serde::{Deserialize, Serialize};
 pub mod adc;
 mod astray;
 pub mod bus;
@@ -56,7 +57,7 @@ const BOOT2_AT: u32 = 0x2004_1f00;
 const WHOLE_CHIP: u32 = 0x1_fffc;
 
 /// One core and how far it has run.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Core {
     pub(crate) cpu: Cpu,
     /// Cycles spent executing, that is not asleep.
@@ -90,14 +91,14 @@ pub struct Halt {
 }
 
 /// A reset that happened.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ResetEvent {
     pub cycle: u64,
     pub cause: ResetCause,
 }
 
 /// The chip.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Chip {
     pub(crate) cores: [Core; 2],
     pub bus: Bus,
@@ -106,6 +107,7 @@ pub struct Chip {
     /// Resets since power-on, the power-on first.
     pub resets: Vec<ResetEvent>,
     /// Cycles spent at each instruction address, a table a core, while profiling.
+    #[serde(skip)]
     profile: Option<Box<[Profile; 2]>>,
     /// A HardFault ends the run (otherwise the image's handler gets it, as on the chip).
     pub stop_at_hard_fault: bool,

@@ -6,6 +6,9 @@
 //! A level that changes at an instant is seen by the chip from the first cycle at or after it, behind the input synchroniser as every
 //! other level; so PPS reaches PIO, GPIO interrupts and the cores at its exact cycle.
 
+use serde::{Deserialize, Serialize};
+
+use crate::snapshot::Part;
 use std::any::Any;
 
 /// Something on the board with a clock of its own.
@@ -21,6 +24,10 @@ pub trait Outside: Send + Any {
 
     /// A copy in the same state, for snapshots.
     fn clone_box(&self) -> Box<dyn Outside>;
+    /// For snapshots in a file: itself as a value, if it is one of the twin's parts.
+    fn part(&self) -> Option<Part> {
+        None
+    }
 }
 
 /// What something outside can see and do at an instant.
@@ -57,7 +64,7 @@ impl Wires {
 }
 
 /// Everything attached, each with the cycle of its next act.
-#[derive(Default)]
+#[derive(Default, Serialize, Deserialize)]
 pub struct Surroundings {
     pub(super) devices: Vec<(Box<dyn Outside>, u64)>,
     /// The first of those cycles.

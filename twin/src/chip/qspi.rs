@@ -11,13 +11,14 @@
 //! What counts is SS: its OUTOVER is how a program drives the flash's chip select. The pads lie on the flash alone; interrupts of these
 //! pins and functions other than XIP are errors. GPIO_HI_IN reads SS high: nobody presses BOOTSEL.
 
+use serde::{Deserialize, Serialize};
 const PINS: usize = 6;
 const SS: usize = 1;
 const CTRL_WRITABLE: u32 = 0x3003_331f;
 const PADS_RESET: [u32; 7] = [0, 0x56, 0x52, 0x52, 0x52, 0x52, 0x5a];
 
 /// Who drives chip select.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 pub enum ChipSelect {
     BySsi,
     Low,
@@ -25,7 +26,7 @@ pub enum ChipSelect {
 }
 
 /// The pins.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Qspi {
     ctrl: [u32; PINS],
     pads: [u32; 7],

@@ -10,13 +10,14 @@
 //! | 14 | DBGFORCE | reads as the idle debug port; a write that attaches it is an error |
 //! | 18 | MEMPOWERDOWN | powering a memory down is an error: its contents would be gone |
 
+use serde::{Deserialize, Serialize};
 /// Interrupt lines a core has.
 const LINES: u32 = 0x03ff_ffff;
 /// Observed SWDIO high, driven lines high, both ports on the pads.
 const DBGFORCE_RESET: u32 = 0x66;
 
 /// The block.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Syscfg {
     pub nmi_mask: [u32; 2],
     proc_config: u32,

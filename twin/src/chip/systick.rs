@@ -14,6 +14,7 @@
 //! ```
 //! Nothing is counted: the value follows from the cycle at which it was last set.
 
+use serde::{Deserialize, Serialize};
 const MASK: u32 = 0x00ff_ffff;
 const ENABLE: u32 = 1 << 0;
 const TICKINT: u32 = 1 << 1;
@@ -21,7 +22,7 @@ const CLKSOURCE: u32 = 1 << 2;
 const COUNTFLAG: u32 = 1 << 16;
 
 /// One core's timer.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
 pub struct SysTick {
     csr: u32,
     rvr: u32,

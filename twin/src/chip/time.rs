@@ -3,8 +3,9 @@
 //! The bus counts in cycles of clk_sys. A peripheral on another clock counts its own ticks; a [`Domain`] says at which cycle a tick
 //! comes. A tick that falls between two cycles is seen at the later one, as a synchroniser would show it, and no error adds up.
 
+use serde::{Deserialize, Serialize};
 /// When something happens: cycle of clk_sys, picoseconds of true time since power-on, and the rate of clk_sys.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Instant {
     pub cycle: u64,
     pub time_ps: u128,
@@ -12,7 +13,7 @@ pub struct Instant {
 }
 
 /// A clock of `hz` beside clk_sys.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Domain {
     hz: u64,
     sys_hz: u64,

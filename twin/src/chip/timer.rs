@@ -18,8 +18,9 @@
 //!
 //! A tick takes a whole number of system cycles; the bus tells how many when the clocks change.
 
+use serde::{Deserialize, Serialize};
 /// Microsecond timer.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Timer {
     /// Ticks at cycle `since`.
     ticks: u64,

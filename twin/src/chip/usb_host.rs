@@ -10,6 +10,7 @@
 //! Bytes to the device wait in `to_device`, bytes from it in `from_device`; when `reading` is off the host leaves IN data in the device,
 //! as a terminal that nobody reads does.
 
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 use super::usb::{Data, Handshake, Usb};
@@ -24,7 +25,7 @@ const CONTROL_TIMEOUT_FRAMES: u64 = 5_000;
 /// Frames without traffic after which a device is suspended (USB 2.0, 7.1.7.6: 3 ms).
 const SUSPEND_FRAMES: u64 = 3;
 
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 enum Stage {
     Setup,
     DataIn,
@@ -33,13 +34,13 @@ enum Stage {
     StatusOut,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Control {
     setup: [u8; 8],
     data: Vec<u8>,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 enum State {
     Detached,
     Debounce(u64),
@@ -48,7 +49,7 @@ enum State {
 }
 
 /// Where the CDC data interface was found.
-#[derive(Clone, Copy, Default, Debug)]
+#[derive(Clone, Copy, Default, Debug, Serialize, Deserialize)]
 struct Endpoints {
     bulk_in: usize,
     bulk_out: usize,
@@ -58,7 +59,7 @@ struct Endpoints {
 }
 
 /// The host and its view of the device.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct UsbHost {
     state: State,
     plugged: bool,

@@ -14,6 +14,7 @@
 //! the tick, and the count, which after a forced reset runs on and bites again if nobody feeds it. After it has bitten it stands at 0, and
 //! bites again only once it is loaded (our reading). TICK.CYCLES is 0 until it is written; no tick comes of that here.
 
+use serde::{Deserialize, Serialize};
 /// Bits of CTRL that software can write without firing, and its reset value.
 const WATCHDOG_CTRL: u32 = 0x4700_0000;
 const CTRL_RESET: u32 = 0x0700_0000;
@@ -22,7 +23,7 @@ const ENABLE: u32 = 1 << 30;
 const TRIGGER: u32 = 1 << 31;
 
 /// Watchdog, its scratch words and the tick generator.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Watchdog {
     ctrl: u32,
     /// Half-ticks left (erratum E1: two a tick) at cycle `since`.

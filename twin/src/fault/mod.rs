@@ -27,13 +27,14 @@
 //!
 //! Everything random comes from the board's seed, so the same faults give the same run.
 
+use serde::{Deserialize, Serialize};
 mod parse;
 pub mod torn;
 
 pub use parse::ParseError;
 
 /// A memory whose bits can turn over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Memory {
     Flash,
     Eeprom,
@@ -41,14 +42,14 @@ pub enum Memory {
 }
 
 /// A serial port with a wire.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Wire {
     Comms,
     Gnss,
 }
 
 /// What happens.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Fault {
     PowerCut {
         off_ms: u64,
@@ -91,7 +92,7 @@ pub enum Fault {
 }
 
 /// When it happens.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum When {
     /// True time since power-on, ps.
     Time(u128),
@@ -113,7 +114,7 @@ impl When {
 }
 
 /// A fault and its time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Planned {
     pub fault: Fault,
     pub when: When,

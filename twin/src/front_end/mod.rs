@@ -9,6 +9,7 @@
 //!
 //! Every number that decides how much is received is in [`parameters`], with its origin.
 
+use serde::{Deserialize, Serialize};
 pub mod chain;
 pub mod decibel;
 pub mod detector;
@@ -22,7 +23,7 @@ pub use parameters::{FrontEnd, Slicer};
 pub use player::{Level, Player};
 
 /// A change of the PULSES pin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Edge {
     /// Picoseconds from the start of playback.
     pub at_ps: u64,

@@ -12,6 +12,7 @@
 //! nothing discharges the RC as a low one does.
 
 use super::decibel;
+use serde::{Deserialize, Serialize};
 
 /// Supply that the PWM's duty is a share of, mV.
 pub const SUPPLY_MV: f64 = 3300.0;
@@ -21,7 +22,7 @@ pub const RC_PS: u64 = 10_000_000_000;
 const SETTLED_MV: f64 = 0.1;
 
 /// The RC's voltage over time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct TriggerLevel {
     from_mv: f64,
     aim_mv: f64,

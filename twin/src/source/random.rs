@@ -1,7 +1,8 @@
 //! Random numbers of the model's own: the same on every host and in every version.
 
+use serde::{Deserialize, Serialize};
 /// SplitMix64 (Steele, Lea, Flood 2014).
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Random(u64);
 
 impl Random {

@@ -8,12 +8,13 @@
 //!
 //! Source: ITU-R TF.460 (leap seconds), IS-GPS-200 (week number).
 
+use serde::{Deserialize, Serialize};
 /// Days that a week rollover steps back: 1024 weeks.
 const ROLLOVER_DAYS: i64 = 7 * 1024;
 const DAY_S: i64 = 86_400;
 
 /// A leap second before this midnight (Unix seconds, a multiple of a day).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Leap {
     pub midnight_unix_s: i64,
     /// Inserted; otherwise the day's last second is left out.
@@ -21,7 +22,7 @@ pub struct Leap {
 }
 
 /// How seconds get their names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Calendar {
     /// Unix time of second 0.
     pub start_unix_s: i64,
@@ -31,7 +32,7 @@ pub struct Calendar {
 }
 
 /// A second's name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Utc {
     pub year: i64,
     pub month: u8,

@@ -11,6 +11,9 @@
 //!
 //! Assumed: the delay of the sentences, the cold start, all of [`pps::Jitter`]; no public document names the module on the board.
 
+use serde::{Deserialize, Serialize};
+
+use crate::snapshot::Part;
 pub mod calendar;
 pub mod nmea;
 pub mod pps;
@@ -31,7 +34,7 @@ const PULSE_PS: u128 = 100 * MS_PS;
 const SATELLITES: u8 = 9;
 
 /// Times in which something is wrong, ms of true time since power-on.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outages {
     pub fix: Vec<Range<u64>>,
     pub pps: Vec<Range<u64>>,
@@ -43,7 +46,7 @@ pub struct Outages {
 }
 
 /// How the receiver is set.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Options {
     pub calendar: Calendar,
     /// True time of the first second's start, ps.
@@ -90,7 +93,7 @@ impl Default for Options {
 }
 
 /// Where it is wired to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Nets {
     pub uart: usize,
     pub pps: u32,
@@ -98,7 +101,7 @@ pub struct Nets {
 }
 
 /// The receiver.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Gnss {
     pub options: Options,
     nets: Nets,
@@ -256,6 +259,10 @@ impl Outside for Gnss {
 
     fn clone_box(&self) -> Box<dyn Outside> {
         Box::new(self.clone())
+    }
+
+    fn part(&self) -> Option<Part> {
+        Some(Part::Gnss(Box::new(self.clone())))
     }
 }
 

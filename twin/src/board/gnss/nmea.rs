@@ -11,9 +11,10 @@
 //! | `ZDA` | time, date | time and date | nothing |
 
 use super::calendar::Utc;
+use serde::{Deserialize, Serialize};
 
 /// Where the antenna is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Place {
     /// 1e-7 degrees, north and east positive.
     pub latitude: i32,
@@ -24,7 +25,7 @@ pub struct Place {
 }
 
 /// What the receiver knows in a second.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct State {
     pub utc: Option<Utc>,
     pub place: Option<Place>,

@@ -12,9 +12,10 @@
 //! drift that wanders slowly through whole ticks.
 
 use crate::source::random::Random;
+use serde::{Deserialize, Serialize};
 
 /// An edge's error and its parts. All integers or pure functions of the second's number.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Jitter {
     /// Antenna and receiver delay, ps.
     pub fixed_ps: i64,

@@ -5,6 +5,7 @@
 
 use super::fabric::{APB_PORT, FAST_PORT, ROM_PORT};
 use super::{Bus, Cause, Fault, ROM, SRAM, SRAM_BASE};
+use serde::{Deserialize, Serialize};
 
 /// Data cycles of a read and of a write through the APB bridge: two of APB, one more for a read, two more for a write, whose data the
 /// bridge must wait for (datasheet 2.1.3).
@@ -14,7 +15,7 @@ const APB_WRITE: u64 = 4;
 const BANK: u32 = 0x1_0000;
 
 /// What answers at an address outside SRAM.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Place {
     Rom,
     Flash,

@@ -23,6 +23,7 @@
 //!
 //! Assumed: a contest costs the loser one cycle.
 
+use serde::{Deserialize, Serialize};
 /// Ports of the crossbar.
 pub const PORTS: usize = 10;
 pub const XIP_PORT: usize = 6;
@@ -49,10 +50,11 @@ pub fn sram_port(at: usize) -> usize {
 }
 
 /// Arbiters and their counters.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Fabric {
-    /// `claims[k][cycle % RING]`: cycle and port of an access of core `k`.
-    claims: [[u32; RING]; 2],
+    /// At `k * RING + cycle % RING`: cycle and port of an access of core `k`.
+    #[serde(with = "crate::snapshot::array")]
+    claims: [u32; 2 * RING],
     /// Accesses by port, and those that found it taken.
     pub accesses: [u64; PORTS],
     pub contested: [u64; PORTS],
@@ -69,7 +71,7 @@ pub struct Fabric {
 impl Default for Fabric {
     fn default() -> Self {
         Self {
-            claims: [[u32::MAX; RING]; 2],
+            claims: [u32::MAX; 2 * RING],
             accesses: [0; PORTS],
             contested: [0; PORTS],
             priority: 0,
@@ -94,12 +96,12 @@ impl Fabric {
         let slot = time as usize % RING;
         self.accesses[port] += 1;
         let (mine, other) = (core & 1, (core ^ 1) & 1);
-        if self.claims[other][slot] != mark(port, time) {
-            self.claims[mine][slot] = mark(port, time);
+        if self.claims[other * RING + slot] != mark(port, time) {
+            self.claims[mine * RING + slot] = mark(port, time);
             return 0;
         }
         self.contested[port] += 1;
-        self.claims[mine][(slot + 1) % RING] = mark(port, time + 1);
+        self.claims[mine * RING + (slot + 1) % RING] = mark(port, time + 1);
         1
     }
 
@@ -107,7 +109,7 @@ impl Fabric {
     pub fn claim_for_dma(&mut self, port: usize, time: u64, write: bool) -> u64 {
         self.accesses[port] += 1;
         let slot = time as usize % RING;
-        let Some(core) = (0..2).find(|k| self.claims[*k][slot] == mark(port, time)) else {
+        let Some(core) = (0..2).find(|k| self.claims[*k * RING + slot] == mark(port, time)) else {
             return 0;
         };
         self.contested[port] += 1;

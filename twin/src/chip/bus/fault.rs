@@ -1,6 +1,7 @@
 //! Why the chip stops or starts again.
 
 use super::xip::Closed;
+use serde::{Deserialize, Serialize};
 
 /// Why the chip stopped. Each names the address and where the program was.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -52,7 +53,7 @@ pub enum Fault {
 }
 
 /// Why a core cannot complete an instruction. On the chip each is a HardFault.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
 pub enum Cause {
     #[error("access of {address:#010x} is not aligned")]
     Unaligned { address: u32 },
@@ -79,7 +80,7 @@ pub enum Cause {
 }
 
 /// What made the chip start again.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ResetCause {
     PowerOn,
     WatchdogTimer,

@@ -10,6 +10,7 @@
 //!
 //! What an access costs: the table in `cpu/access.rs`, `fabric.rs` for ports that two masters want, `xip.rs` for flash.
 
+use serde::{Deserialize, Serialize};
 mod blocks;
 mod cores;
 pub mod debug;
@@ -83,18 +84,22 @@ mod irq {
 }
 
 /// Memories, peripherals, and the state both cores share.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Bus {
     pub rom: Vec<u8>,
     pub flash: Flash,
+    #[serde(with = "crate::snapshot::array")]
     pub sram: Box<[u8; SRAM]>,
     pub fabric: Fabric,
     pub xip: Xip,
     /// Which bytes of SRAM were written, while that is watched.
+    #[serde(skip)]
     pub shadow: Option<Box<Shadow>>,
     /// What a debugger wants, while one is attached.
+    #[serde(skip)]
     pub debug: Option<Box<debug::Debug>>,
     /// Signals that are being recorded.
+    #[serde(skip)]
     pub trace: Option<Box<Trace>>,
     /// Peripherals have been advanced to this cycle.
     pub now: u64,
@@ -114,6 +119,7 @@ pub struct Bus {
     pub nvic: [Nvic; 2],
     pub event: [bool; 2],
     pub event_time: u64,
+    #[serde(skip)]
     pub fault: Option<Fault>,
     pub reset_request: Option<ResetCause>,
     pub core1_forced_off: bool,
@@ -134,6 +140,7 @@ pub struct Bus {
     dma_at: u64,
     deadlines: Deadlines,
     /// Registers touched, while somebody wants to know.
+    #[serde(skip)]
     used: Option<Box<Used>>,
     /// The cycle at which the DMA can make its next transfer.
     dma_free: u64,

@@ -5,9 +5,10 @@
 
 use super::{Bus, ResetCause};
 use crate::chip::cpu::ppb::SYSTICK_PENDING;
+use serde::{Deserialize, Serialize};
 
 /// Peripherals with deadlines, in the order in which those due at the same cycle act.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Actor {
     Clocks,
     Timer,
@@ -37,7 +38,7 @@ const ACTORS: [Actor; 13] = [
 ];
 
 /// The cycles they named.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Deadlines {
     at: [u64; ACTORS.len()],
     earliest: u64,

@@ -7,13 +7,16 @@ use crate::chip::pins::Played;
 use crate::front_end::parameters::LEAST_MILLIVOLT;
 use crate::front_end::trigger_level::{SUPPLY_MV, TriggerLevel};
 use crate::source::random::Random;
+use serde::{Deserialize, Serialize};
+
+use crate::snapshot::Part;
 
 const PS_A_SECOND: u128 = 1_000_000_000_000;
 /// Noise of the RSSI net at its ADC input, mV rms (assumed: two steps of the ADC).
 const RSSI_NOISE_MV: f64 = 1.6;
 
 /// A trigger level: the pin whose PWM makes it, the ADC channel that reads it back, the voltage behind its RC.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct TriggerNet {
     pub gpio: usize,
     pub adc: usize,
@@ -27,6 +30,10 @@ impl AnalogInput for TriggerLevel {
 
     fn clone_box(&self) -> Box<dyn AnalogInput> {
         Box::new(*self)
+    }
+
+    fn part(&self) -> Option<Part> {
+        Some(Part::TriggerLevel(self.clone()))
     }
 }
 

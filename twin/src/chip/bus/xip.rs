@@ -26,6 +26,7 @@
 //! While a line is fetched, the other masters wait for the port.
 
 use super::{Bus, Cause};
+use serde::{Deserialize, Serialize};
 
 /// Core 0, core 1, DMA.
 pub const MASTERS: usize = 3;
@@ -44,7 +45,7 @@ const POWER_DOWN: u32 = 8;
 const NO_TAG: u32 = u32::MAX;
 
 /// Why flash cannot be read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Closed {
     /// The SSI is off or has not been set up.
     Disabled,
@@ -73,7 +74,7 @@ impl std::fmt::Display for Closed {
 }
 
 /// The cache and its state.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Xip {
     /// Two ways a set: tag and whether way 1 was used last.
     tags: Vec<[u32; 2]>,

@@ -12,12 +12,13 @@
 //! It counts the clock for 2^INTERVAL steps of 0.98 µs of clk_ref, as REF_KHZ says that clock is; a wrong REF_KHZ gives a wrong result. The
 //! result is exact to the step's resolution: 2048 kHz at INTERVAL 0, half of it with each further one.
 
+use serde::{Deserialize, Serialize};
 /// Nanoseconds of the shortest interval.
 const INTERVAL_NS: u64 = 980;
 /// Resolution at INTERVAL 0, in 32nds of a kHz.
 const RESOLUTION: u64 = 2048 * 32;
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Counter {
     ref_khz: u32,
     min_khz: u32,

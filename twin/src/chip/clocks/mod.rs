@@ -15,6 +15,7 @@
 //!
 //! Not modelled, an error when asked for: GPOUT enabled, a clock switched off by WAKE_EN or SLEEP_EN.
 
+use serde::{Deserialize, Serialize};
 mod counter;
 mod oscillators;
 mod pll;
@@ -24,8 +25,9 @@ use oscillators::{Rosc, Xosc};
 use pll::Pll;
 
 /// The clock tree.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Clocks {
+    #[serde(with = "crate::snapshot::array")]
     registers: [u32; 0xc8 / 4],
     xosc: Xosc,
     rosc: Rosc,

@@ -12,6 +12,7 @@
 //! The crystal oscillates at once; STABLE comes after STARTUP's delay, and until then nothing can run from it. A crystal that is dead never
 //! becomes stable. A write to FREQA, FREQB, DIV or PHASE of the ring, which would change its frequency, and DORMANT of both are errors.
 
+use serde::{Deserialize, Serialize};
 /// Crystal of every board (REFERENCE: 12 MHz).
 pub const XOSC_HZ: u64 = 12_000_000;
 /// Nominal ring oscillator (datasheet 2.17: about 6.5 MHz).
@@ -30,7 +31,7 @@ fn flag(on: bool, bits: u32) -> u32 {
 }
 
 /// Crystal oscillator.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Xosc {
     ctrl: u32,
     startup: u32,
@@ -125,7 +126,7 @@ impl Xosc {
 }
 
 /// Ring oscillator.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Rosc {
     ctrl: u32,
     bad_write: bool,

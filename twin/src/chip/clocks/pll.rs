@@ -12,6 +12,7 @@
 //! It locks [`LOCK_REFERENCES`] reference periods after the last change that unsettles it, if reference (5 MHz at least), feedback (16 to 320) and
 //! VCO (750 to 1600 MHz) are in range; out of range it never does.
 
+use serde::{Deserialize, Serialize};
 /// Time to lock, in reference periods (assumed: the datasheet gives none; 42 µs at 12 MHz).
 const LOCK_REFERENCES: u64 = 500;
 const LEAST_REFERENCE_HZ: u64 = 5_000_000;
@@ -24,7 +25,7 @@ const POST_POWER_DOWN: u32 = 1 << 3;
 const VCO_POWER_DOWN: u32 = 1 << 5;
 
 /// One PLL.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Pll {
     cs: u32,
     pwr: u32,

@@ -13,6 +13,7 @@
 //! Cycles are those of TRM table 3.1 with zero wait states, plus what each access waits for ([`super::bus`]). A core runs ahead of the
 //! peripherals inside a slice and stops where the chip around it must look ([`Bus::attention`]).
 
+use serde::{Deserialize, Serialize};
 mod access;
 mod arithmetic;
 mod exceptions;
@@ -31,7 +32,7 @@ pub use stack::StackWatch;
 const NO_WORD: u32 = u32::MAX;
 
 /// Why a core does not execute.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 pub enum Sleep {
     Awake,
     /// Until an interrupt is pending.
@@ -41,7 +42,7 @@ pub enum Sleep {
 }
 
 /// One core.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Cpu {
     pub regs: Registers,
     /// The cycle it has come to.

@@ -1,5 +1,6 @@
 //! What the core itself keeps of the system control block and the NVIC (ARMv6-M B3.2, B3.4); `bus/ppb.rs` gives it addresses.
 
+use serde::{Deserialize, Serialize};
 /// Bits of ICSR that wait for their exception.
 pub const NMI_PENDING: u32 = 1 << 31;
 pub const PENDSV_PENDING: u32 = 1 << 28;
@@ -8,7 +9,7 @@ pub const SYSTICK_PENDING: u32 = 1 << 26;
 const PRIORITY: u8 = 0xc0;
 
 /// System control block of one core.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Ppb {
     pub vtor: u32,
     /// Priorities of exceptions 4 to 15.
@@ -95,7 +96,7 @@ impl Default for Ppb {
 }
 
 /// Interrupt controller of one core: a bit a line.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
 pub struct Nvic {
     pub pending: u32,
     pub enabled: u32,

@@ -1,7 +1,8 @@
 //! Core registers and flags (ARMv6-M B1.4).
 
+use serde::{Deserialize, Serialize};
 /// Registers of one core. `r[13]` is the stack pointer in use; `msp` and `psp` hold the one that is not, and both at a switch.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Registers {
     /// R0 to R14. The program counter is [`Registers::pc`].
     pub r: [u32; 16],

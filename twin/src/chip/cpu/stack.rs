@@ -3,8 +3,9 @@
 //! The lowest stack pointer is noted where instructions lower it (PUSH, SUB SP, exception entry); the limit is compared only when a new
 //! low is reached, so watching costs next to nothing.
 
+use serde::{Deserialize, Serialize};
 /// One core's stack.
-#[derive(Clone, Default, Debug, PartialEq, Eq)]
+#[derive(Clone, Default, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StackWatch {
     /// Where the stack pointer was set last by MSR, by the ROM or by the launch of core 1.
     pub top: u32,

@@ -12,6 +12,7 @@
 
 use super::pacing::{PERMANENT, Request};
 use super::{BusError, CHANNELS};
+use serde::{Deserialize, Serialize};
 
 /// Bits of CTRL that software can write.
 const WRITABLE: u32 = 0x00ff_ffff;
@@ -23,7 +24,7 @@ const BUSY: u32 = 1 << 24;
 const MOST_CREDITS: u32 = 63;
 
 /// One channel's registers.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct Channel {
     pub read_addr: u32,
     pub write_addr: u32,

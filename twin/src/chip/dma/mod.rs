@@ -14,6 +14,7 @@
 //! Erratum RP2040-E13: aborting a channel that makes progress can raise its completion interrupt. The model always raises it, since
 //! firmware must be ready for it.
 
+use serde::{Deserialize, Serialize};
 mod channel;
 pub mod pacing;
 mod registers;
@@ -31,14 +32,14 @@ use sniffer::Sniffer;
 pub const CHANNELS: usize = 12;
 
 /// A bus error of a transfer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BusError {
     Read,
     Write,
 }
 
 /// The controller.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Dma {
     pub channels: [Channel; CHANNELS],
     /// Channels with a sequence running.

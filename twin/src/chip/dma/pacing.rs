@@ -6,13 +6,14 @@
 //! FIFO has to offer then. A processor that takes words from such a FIFO leaves the channel with credits for words that are not there,
 //! as on the chip.
 
+use serde::{Deserialize, Serialize};
 /// TREQ_SEL of an unpaced channel.
 pub const PERMANENT: u32 = 0x3f;
 /// TREQ_SEL of the first pacing timer.
 const TIMER_0: u32 = 0x3b;
 
 /// What the source of a DREQ says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Request {
     /// Nothing to wait for.
     Always,
@@ -32,7 +33,7 @@ pub(super) fn timer(dreq: u32) -> Option<usize> {
 }
 
 /// A pacing timer: X requests every Y cycles, evenly, at most one a cycle.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct Timer {
     /// X in 31:16, Y in 15:0.
     fraction: u32,

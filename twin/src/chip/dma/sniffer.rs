@@ -11,11 +11,12 @@
 //! | 9 | BSWAP | f | sum |
 //! | 10 11 | OUT_REV, OUT_INV: of what SNIFF_DATA reads | | |
 
+use serde::{Deserialize, Serialize};
 const CRC32: u32 = 0x04c1_1db7;
 const CRC16: u32 = 0x1021;
 
 /// The checksum unit.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct Sniffer {
     ctrl: u32,
     data: u32,

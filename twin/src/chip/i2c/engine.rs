@@ -15,9 +15,10 @@
 //! keep the controller from starting, and ends in lost arbitration at the first 1 of the address.
 
 use super::registers::{FIFO, READ, RESTART, Registers, STOP, abort, raw};
+use serde::{Deserialize, Serialize};
 
 /// What the lines do until the next event.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 pub(super) enum Step {
     /// Nothing in hand.
     Idle,
@@ -40,7 +41,7 @@ pub(super) enum Step {
 }
 
 /// What a clock pulse carries.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 pub(super) enum Symbol {
     /// A bit; `true` lets SDA go.
     Bit(bool),
@@ -50,14 +51,14 @@ pub(super) enum Symbol {
 }
 
 /// The byte on the wire.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 enum Byte {
     Address { read: bool },
     Write,
     Read,
 }
 
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Engine {
     pub(super) step: Step,
     /// Cycle at which the step ends; `MAX` where it waits for a line or for software.

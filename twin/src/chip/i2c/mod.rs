@@ -15,6 +15,9 @@
 //! Not modelled, an error when asked for: target mode of the controller, 10-bit addresses, general call and START byte by IC_TAR.
 //! The spike filter delays as the datasheet says (SPKLEN in SCL's high time) but removes nothing, since no line here has spikes.
 
+use serde::{Deserialize, Serialize};
+
+use crate::snapshot::Part;
 mod engine;
 mod registers;
 mod wire;
@@ -42,6 +45,10 @@ pub trait I2cTarget: Send + Any {
     }
     /// For snapshots.
     fn clone_box(&self) -> Box<dyn I2cTarget>;
+    /// For snapshots in a file: itself as a value, if it is one of the twin's parts.
+    fn part(&self) -> Option<Part> {
+        None
+    }
 }
 
 impl Clone for Box<dyn I2cTarget> {
@@ -51,7 +58,7 @@ impl Clone for Box<dyn I2cTarget> {
 }
 
 /// One controller and the wire on its pins.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct I2c {
     registers: Registers,
     engine: Engine,

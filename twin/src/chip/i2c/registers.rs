@@ -15,6 +15,7 @@
 //! controller is idle; IC_TX_ABRT_SOURCE stays until it is cleared by one of those reads (the datasheet names no other way).
 
 use super::engine::{Engine, Step};
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// Depth of each FIFO (datasheet 4.3.2).
@@ -56,7 +57,7 @@ const TARGET_OFF: u32 = 1 << 6;
 const TX_EMPTY_CTRL: u32 = 1 << 8;
 const HOLD_ON_FULL: u32 = 1 << 9;
 
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Registers {
     con: u32,
     tar: u32,

@@ -9,9 +9,10 @@
 
 use super::I2cTarget;
 use crate::chip::time::Instant;
+use serde::{Deserialize, Serialize};
 
 /// What the bits on the wire are.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 enum State {
     /// No START yet, or a transfer that concerns nobody here.
     Silent,
@@ -24,7 +25,7 @@ enum State {
 }
 
 /// Two lines and the devices on them.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Wire {
     pub(super) sda_pin: u32,
     pub(super) scl_pin: u32,

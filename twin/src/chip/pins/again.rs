@@ -5,6 +5,9 @@
 
 use std::sync::Arc;
 
+use serde::ser::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use crate::front_end::{Edge, PulseSource};
 
 /// Makes the source anew, at its start.
@@ -73,23 +76,83 @@ impl Clone for Repeated {
                 "what plays into PULSES cannot be repeated; start it with Board::play_repeatable"
             );
         };
+        Self::repeat(again, &self.asked, self.told)
+    }
+}
+
+impl Repeated {
+    /// The source made anew, and told and asked what the first one was.
+    fn repeat(again: &Again, asked: &[(u64, Option<f64>)], told: Option<f64>) -> Self {
         let mut source = again();
         let mut gone = Vec::new();
-        for (until_ps, told) in &self.asked {
+        for (until_ps, told) in asked {
             if let Some(mv) = told {
                 source.set_trigger_level_mv(*mv);
             }
             source.next_edges(*until_ps, &mut gone);
             gone.clear();
         }
-        if let Some(mv) = self.told {
+        if let Some(mv) = told {
             source.set_trigger_level_mv(mv);
         }
         Self {
             source,
             again: Some(Arc::clone(again)),
-            asked: self.asked.clone(),
-            told: self.told,
+            asked: asked.to_vec(),
+            told,
         }
     }
+
+    /// What was read from a snapshot plays on, once the source is given.
+    pub(super) fn resume(&mut self, again: &Again) {
+        *self = Self::repeat(again, &self.asked, self.told);
+    }
+}
+
+/// What a snapshot keeps of a source: what it was asked and told.
+#[derive(Serialize, Deserialize)]
+struct Asked {
+    asked: Vec<(u64, Option<f64>)>,
+    told: Option<f64>,
+}
+
+impl Serialize for Repeated {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        if !self.is_repeatable() {
+            return Err(S::Error::custom(
+                "what plays into PULSES cannot be repeated",
+            ));
+        }
+        let Self { asked, told, .. } = self;
+        Asked {
+            asked: asked.clone(),
+            told: *told,
+        }
+        .serialize(to)
+    }
+}
+
+impl<'de> Deserialize<'de> for Repeated {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let Asked { asked, told } = Asked::deserialize(from)?;
+        Ok(Self {
+            source: Box::new(NotYet),
+            again: None,
+            asked,
+            told,
+        })
+    }
+}
+
+/// Stands for the source of a board just read from a snapshot, until [`Repeated::resume`].
+struct NotYet;
+
+impl PulseSource for NotYet {
+    fn next_edges(&mut self, _: u64, _: &mut Vec<Edge>) {}
+
+    fn finished(&self) -> bool {
+        true
+    }
+
+    fn set_trigger_level_mv(&mut self, _: f64) {}
 }

@@ -2,9 +2,10 @@
 
 use super::PADS;
 use super::functions::FUNCTIONS;
+use serde::{Deserialize, Serialize};
 
 /// The four ways of an override field.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct Override {
     invert: u32,
     low: u32,
@@ -29,7 +30,7 @@ impl Override {
 }
 
 /// Masks over the pins.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Choices {
     /// Pins that each function drives and listens to.
     pub(super) selected: [u32; FUNCTIONS],

@@ -23,6 +23,7 @@
 //! ([`Pins::change_at`]), and with every other pin, one that the chip drives itself included. Inputs of UART, SPI and I2C and the
 //! interrupt bits see those others at once.
 
+use serde::{Deserialize, Serialize};
 mod again;
 mod choices;
 pub mod functions;
@@ -54,7 +55,7 @@ const DEBUG_PADS_RESET: [u32; 2] = [0xda, 0x5a];
 const LISTENERS: usize = 3;
 
 /// Pads, function multiplexers and their interrupts.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Pins {
     ctrl: [u32; PADS],
     pads: [u32; PADS],
@@ -106,7 +107,7 @@ pub enum Played {
 }
 
 /// What the peripherals offer to the multiplexer: levels and output enables, spread over the pins that can carry them.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
 pub struct Drivers {
     pub sio: (u32, u32),
     pub pio: [(u32, u32); 2],
@@ -157,6 +158,18 @@ impl Pins {
         self.playback = Some(playback);
         self.note_next_visible();
         self.resolve_levels();
+    }
+
+    /// Something plays.
+    pub fn plays(&self) -> bool {
+        self.playback.is_some()
+    }
+
+    /// Gives a chip that was read from a snapshot the source that it was playing.
+    pub fn resume_playback(&mut self, again: &Again) {
+        if let Some(playback) = &mut self.playback {
+            playback.resume(again);
+        }
     }
 
     /// Whether what plays, if anything does, can be repeated for a copy of the chip.

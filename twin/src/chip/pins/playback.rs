@@ -7,17 +7,18 @@
 //! to that cycle, and edges that were not played yet get new cycles. At 120 MHz with an exact crystal the cycle is
 //! [`edge_tick`](crate::front_end::edge_tick), as in the native engine.
 
-use super::again::Repeated;
+use super::again::{Again, Repeated};
 use crate::chip::crystal::Crystal;
 use crate::front_end::trigger_level::TriggerLevel;
 use crate::front_end::{Edge, edge_tick};
+use serde::{Deserialize, Serialize};
 
 /// How far the pulse source is asked ahead at a time, in picoseconds.
 const LOOKAHEAD_PS: u64 = 100_000_000;
 /// The rate at which [`edge_tick`] counts.
 const TICK_HZ: u64 = 120_000_000;
 
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Playback {
     source: Repeated,
     pub(super) pin: u32,
@@ -149,6 +150,10 @@ impl Playback {
     }
 
     /// Whether a copy can be made.
+    pub(super) fn resume(&mut self, again: &Again) {
+        self.source.resume(again);
+    }
+
     pub(super) fn is_repeatable(&self) -> bool {
         self.source.is_repeatable()
     }

@@ -4,12 +4,13 @@
 //! long after the last change. The playback pin has edges with exact times instead ([`super::playback`]).
 
 use super::SYNC_CYCLES;
+use serde::{Deserialize, Serialize};
 
 /// Changes that can be on their way at once: one a cycle, and the one that arrives.
 const DEPTH: usize = SYNC_CYCLES as usize + 1;
 
 /// Levels on their way to the readers.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct Synchroniser {
     /// The cycle of each change and the levels before it, the oldest first.
     changes: [(u64, u32); DEPTH],

@@ -19,6 +19,7 @@
 //! the cycle of the next one and [`Pio::run`] executes up to a limit, stopping after the first tick that others can see (a FIFO, an IRQ
 //! flag or an output pin changed).
 
+use serde::{Deserialize, Serialize};
 mod instructions;
 mod observed;
 mod outputs;
@@ -31,7 +32,7 @@ pub use observed::Observed;
 use state_machine::StateMachine;
 
 /// One PIO block.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Pio {
     sm: [StateMachine; 4],
     program: [u16; 32],

@@ -2,9 +2,10 @@
 //! and nothing in the twin depends on it.
 
 use super::Pio;
+use serde::{Deserialize, Serialize};
 
 /// The inside of one state machine after a cycle.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Observed {
     /// Address of the next instruction, 0 to 31.
     pub pc: u32,

@@ -18,6 +18,7 @@
 //! OUT has the enable bit; a disabled state machine asserts nothing again.
 
 use super::Pio;
+use serde::{Deserialize, Serialize};
 
 const OUT_STICKY: u32 = 1 << 17;
 const INLINE_OUT_EN: u32 = 1 << 18;
@@ -25,14 +26,14 @@ const INLINE_OUT_EN: u32 = 1 << 18;
 const OUT_EN_SEL: u32 = 19;
 
 /// Levels or directions for some pins; none if the mask is empty.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct PinWrite {
     mask: u32,
     bits: u32,
 }
 
 /// What a write acts on.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Target {
     Levels = 0,
     Directions = 1,

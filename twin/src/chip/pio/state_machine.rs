@@ -1,12 +1,13 @@
 //! One state machine: its registers, FIFOs and shift registers.
 
 use super::outputs::PinWrite;
+use serde::{Deserialize, Serialize};
 
 /// Depth of one FIFO in words; joined it is twice that (datasheet 3.2.4).
 const FIFO_DEPTH: usize = 4;
 
 /// A FIFO of one direction; its capacity follows the join bits.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Fifo {
     pub(super) words: [u32; 2 * FIFO_DEPTH],
     pub(super) head: usize,
@@ -47,7 +48,7 @@ impl Fifo {
 }
 
 /// One state machine.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct StateMachine {
     pub(super) clkdiv: u32,
     pub(super) execctrl: u32,

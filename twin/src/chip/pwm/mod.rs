@@ -12,6 +12,7 @@
 //! A slice is an event only where someone waits for it: an interrupt or a DMA channel for its wrap, a trace or PIO for its edges. Else its
 //! state is worked out when it is read. A pin that turns or an edge count that changes is known from the moment the pads resolve it.
 
+use serde::{Deserialize, Serialize};
 mod slice;
 
 use slice::Slice;
@@ -20,7 +21,7 @@ use slice::Slice;
 pub const SLICES: usize = 8;
 
 /// All slices.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Pwm {
     slices: [Slice; SLICES],
     /// Wraps of each slice that the raw interrupt has seen.

@@ -8,6 +8,7 @@
 //! Nothing is counted: the place in the period follows from the cycle at which it was last known. The divider is a first-order
 //! delta-sigma: count k comes at the first cycle not before k (INT + FRAC / 16).
 
+use serde::{Deserialize, Serialize};
 /// CSR bits.
 const ENABLE: u32 = 1 << 0;
 const PHASE_CORRECT: u32 = 1 << 1;
@@ -16,7 +17,7 @@ const RETARD: u32 = 1 << 6;
 const ADVANCE: u32 = 1 << 7;
 
 /// What makes the divider step (CSR DIVMODE).
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 enum Input {
     Cycles,
     /// Cycles while the B pin is high.
@@ -25,7 +26,7 @@ enum Input {
     Fall,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Slice {
     pub(super) csr: u32,
     pub(super) div: u32,

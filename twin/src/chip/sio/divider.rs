@@ -5,12 +5,13 @@
 //! Writing an operand starts a division; READY falls for [`CYCLES`] and DIRTY rises until QUOTIENT is read. What QUOTIENT and REMAINDER hold
 //! before READY is nothing a program can use, so reading them then is an error.
 
+use serde::{Deserialize, Serialize};
 /// Cycles a division takes.
 const CYCLES: u64 = 8;
 const READY: u32 = 1 << 0;
 const DIRTY: u32 = 1 << 1;
 
-#[derive(Default, Clone, Copy)]
+#[derive(Default, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Divider {
     dividend: u32,
     divisor: u32,

@@ -16,6 +16,7 @@
 //!                    └──────── ADD_RAW ───────────┘             both masked lanes + BASE2 ─▶ full result
 //! ```
 
+use serde::{Deserialize, Serialize};
 const WRITABLE: u32 = 0x001f_ffff;
 const BLEND: u32 = 1 << 21;
 const CLAMP: u32 = 1 << 22;
@@ -24,7 +25,7 @@ const CROSS_INPUT: u32 = 1 << 16;
 const CROSS_RESULT: u32 = 1 << 17;
 const ADD_RAW: u32 = 1 << 18;
 
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct Interpolator {
     accum: [u32; 2],
     base: [u32; 3],

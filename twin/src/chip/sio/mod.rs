@@ -12,6 +12,7 @@
 //! | 60-78 | DIV_UDIVIDEND UDIVISOR SDIVIDEND SDIVISOR QUOTIENT REMAINDER CSR |
 //! | 80-bc c0-fc | INTERP0 INTERP1 |
 
+use serde::{Deserialize, Serialize};
 mod divider;
 mod interpolator;
 
@@ -23,7 +24,7 @@ use std::collections::VecDeque;
 const FIFO: usize = 8;
 
 /// What a write asks of the chip around it.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Effect {
     None,
     /// GPIO outputs changed.
@@ -33,7 +34,7 @@ pub enum Effect {
 }
 
 /// The block, shared by both cores.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Sio {
     pub out: u32,
     pub oe: u32,

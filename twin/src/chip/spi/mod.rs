@@ -23,6 +23,7 @@
 //!
 //! Not modelled, an error when asked for: target mode (MS), the formats of TI and National (FRF).
 
+use serde::{Deserialize, Serialize};
 mod device;
 
 pub use device::SpiDevice;
@@ -48,7 +49,7 @@ const TIMEOUT: u32 = 1 << 1;
 const FINE: u64 = 256;
 
 /// A frame on the wire.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 struct Frame {
     start: u64,
     /// Edges of SCK done.
@@ -61,7 +62,7 @@ struct Frame {
 }
 
 /// One controller and the devices on its wires.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Spi {
     cr0: u32,
     cr1: u32,

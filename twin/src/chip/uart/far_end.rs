@@ -2,10 +2,11 @@
 
 use super::line::{Character, Framing, Parity, Receiver, Wave};
 use crate::source::random::Random;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// Rate and framing of a far end that has its own.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 pub struct FarFormat {
     /// Bits a second.
     pub baud: u32,
@@ -36,7 +37,7 @@ impl FarFormat {
 }
 
 /// What waits to be sent.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) enum Item {
     Byte(u8),
     /// Low for this many bit times.
@@ -44,7 +45,7 @@ pub(super) enum Item {
 }
 
 /// Noise that inverts bits.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 struct Noise {
     random: Random,
     /// Of a million bits, so many are inverted.
@@ -52,7 +53,7 @@ struct Noise {
 }
 
 /// The far end.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub struct FarEnd {
     /// Its own rate and framing; `None` follows the device's, whatever that is.
     pub format: Option<FarFormat>,

@@ -10,6 +10,7 @@
 //!
 //! Times are in 256ths of a clk_sys cycle ([`FINE`]), so that no error adds up over a stream of characters.
 
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// Units of time in a cycle of clk_sys.
@@ -21,7 +22,7 @@ pub fn cycle_of(fine: u64) -> u64 {
 }
 
 /// What the bit after the data is.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
 pub enum Parity {
     #[default]
     None,
@@ -46,7 +47,7 @@ impl Parity {
 }
 
 /// How characters are framed, and how long a bit is.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 pub struct Framing {
     /// Length of a bit, in units of [`FINE`]; 0 while there is no rate.
     pub bit: u64,
@@ -67,7 +68,7 @@ impl Framing {
 }
 
 /// What a receiver makes of a character.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 pub struct Character {
     pub data: u8,
     pub framing_error: bool,
@@ -77,7 +78,7 @@ pub struct Character {
 }
 
 /// Levels over time. Idle is high.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Wave {
     edges: VecDeque<(u64, bool)>,
     /// Level before the first edge, and behind the last.
@@ -157,7 +158,7 @@ impl Wave {
 }
 
 /// The sampling end of a line.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Receiver {
     /// The next start bit falls at or after this.
     from: u64,

@@ -20,6 +20,7 @@
 //!
 //! Not modelled, an error when switched on: infrared (SIREN). DCD, DSR and RI are not wired on this chip.
 
+use serde::{Deserialize, Serialize};
 mod far_end;
 mod line;
 mod registers;
@@ -68,7 +69,7 @@ const BREAK: u32 = 1 << 0;
 const FIFOS: u32 = 1 << 4;
 
 /// One UART and its far end.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Uart {
     ibrd: u32,
     fbrd: u32,

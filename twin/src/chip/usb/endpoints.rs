@@ -18,6 +18,7 @@
 //! is set, which the next SETUP clears.
 
 use super::{DPRAM, Usb, sie};
+use serde::{Deserialize, Serialize};
 
 const LEN: u32 = 0x3ff;
 const AVAILABLE: u32 = 1 << 10;
@@ -40,7 +41,7 @@ const BUFFER_0: usize = 0x100;
 const HALF: usize = 64;
 
 /// A data packet: its PID (DATA1 is true) and its bytes.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Data {
     pub pid: bool,
     pub bytes: Vec<u8>,
@@ -58,7 +59,7 @@ pub enum Handshake {
 }
 
 /// One half of an endpoint as a token finds it.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 struct Half {
     /// Offset of the buffer control word.
     at: usize,

@@ -14,6 +14,7 @@
 //! | 180- | data buffers | 70 74 78 | EP_STATUS_STALL_NAK USB_MUXING USB_PWR |
 //! | | | 8c 90 94 98 | INTR INTE INTF INTS |
 
+use serde::{Deserialize, Serialize};
 mod endpoints;
 
 #[cfg(test)]
@@ -54,7 +55,7 @@ mod ctrl {
 }
 
 /// A packet that arrived damaged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Damage {
     Crc,
     BitStuff,
@@ -64,7 +65,7 @@ pub enum Damage {
 }
 
 /// Controller state.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Usb {
     pub dpram: Vec<u8>,
     addr_endp: u32,
