@@ -14,7 +14,7 @@ use twin::source::PRE_ROLL_PS;
 use crate::instruments::{self, Instruments};
 use crate::programme::{Offered, Programme, offered, programme};
 use crate::serial::Serial;
-use crate::{Failure, device, hardware, radio};
+use crate::{Failure, device, hardware, radio, snapshots};
 
 /// Emulated time between two looks at the ports, in milliseconds.
 const STEP_MS: u64 = 5;
@@ -87,6 +87,7 @@ pub fn command() -> Command {
         )
         .arg(flag("realtime").help("Run no faster than real time"))
         .arg(flag("stats").help("Print AT+STATS? at the end"))
+        .args(snapshots::arguments())
         .arg(device::profile_argument())
         .args(instruments::arguments())
         .arg(instruments::gdb_argument())
@@ -135,13 +136,15 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
     let told = Arc::clone(&stop);
     ctrlc::set_handler(move || told.store(true, Ordering::Relaxed))
         .map_err(|e| Failure::Usage(format!("cannot watch for Ctrl-C: {e}")))?;
-    let mut board = hardware::build(matches)?;
+    let resumed = snapshots::resume(matches)?;
+    let is_resumed = resumed.is_some();
+    let mut board = resumed.map_or_else(|| hardware::build(matches), Ok)?;
     instruments::at_power_on(&mut board, matches);
     if !instruments::debug(&mut board, matches)? {
         return Ok(());
     }
     let done = Serial::open(matches)
-        .and_then(|serial| Session::begin(&mut board, matches, serial, programme))
+        .and_then(|serial| Session::begin(&mut board, matches, serial, programme, is_resumed))
         .and_then(|session| session.run(&mut board, matches, &stop));
     hardware::keep(&mut board, matches)?;
     done
@@ -172,6 +175,7 @@ impl Session {
         matches: &ArgMatches,
         serial: Option<Serial>,
         programme: Option<Programme>,
+        is_resumed: bool,
     ) -> Result<Self, Failure> {
         board.wait_for_capture()?;
         let listens = board.wait_for_console_if_expected()?;
@@ -190,8 +194,11 @@ impl Session {
         }
         let (source, log) = programme.map_or((None, None), |p| (Some(p.source), p.log));
         let finite = source.is_some();
-        if let Some(source) = source {
-            board.play(source)?;
+        if let (Some(source), false) = (source, is_resumed) {
+            match snapshots::again(matches) {
+                Some(again) => board.play_repeatable(again)?,
+                None => board.play(source)?,
+            };
         }
         let binary = protocol.is_some_and(|p| p.eq_ignore_ascii_case("BEAST"));
         Ok(Self {
@@ -252,6 +259,7 @@ impl Session {
     }
 
     fn end(self, board: &mut Board, matches: &ArgMatches) -> Result<(), Failure> {
+        snapshots::save(board, matches)?;
         let passed = (board.chip.now() - self.cycles) as f64;
         let busy = board.chip.busy_cycles();
         let waits = board.chip.wait_cycles();

@@ -18,6 +18,7 @@ mod radio;
 mod replay;
 mod scene;
 mod serial;
+mod snapshots;
 
 use std::process::ExitCode;
 

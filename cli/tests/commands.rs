@@ -210,3 +210,33 @@ fn a_profile_names_the_functions_of_both_cores() {
     // The densest recording at hand leaves core 1 a reserve: nothing may be lost at the ring.
     assert!(busy < 80.0, "core 1 is {busy} % busy");
 }
+
+#[test]
+fn a_device_goes_on_from_its_snapshot_as_if_nothing_had_been() {
+    let folder = std::env::temp_dir().join(format!("squitter-snapshot-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder for temporary files");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_string();
+    let (log, snapshot) = (path("log"), path("snapshot"));
+    let lines: String = (0..300)
+        .map(|n| format!("{}.{:02},5D4B18FFFC710B\n", n / 100, n % 100))
+        .collect();
+    std::fs::write(&log, lines).expect("the log is written");
+    let run = |seconds: &str, options: &[&str]| {
+        let output = squitter(&[&["twin", &log, "--seconds", seconds], options].concat());
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{told}");
+        output.stdout
+    };
+    let raw = ["--protocol", "RAW"];
+    let whole = run("2", &raw);
+    let mut parts = run("1", &[&raw[..], &["--snapshot", &snapshot]].concat());
+    let first = parts.len();
+    parts.extend(run("1", &["--resume", &snapshot]));
+    assert!(first > 500 && parts.len() > first + 500, "both parts heard");
+    assert!(parts == whole, "the parts are the whole");
+    let output = squitter(&["twin", "--seconds", "1", "--resume", &snapshot]);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(told.contains("hearing something"), "{told}");
+    assert_eq!(output.status.code(), Some(1));
+    std::fs::remove_dir_all(&folder).expect("it is ours");
+}

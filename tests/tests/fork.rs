@@ -73,6 +73,17 @@ fn a_fork_goes_on_as_the_board_does() {
         source_missing,
         Err(snapshot::Error::WithoutSource)
     ));
+    let other: Again = Arc::new(|| {
+        let frame = mode_s::Frame::from_bytes(&[0x5d, 0x4b, 0x18, 0xff, 0xfc, 0x71, 0x0b]);
+        let once = frame.map(|frame| OnAir {
+            at_ps: 5_000_000_000,
+            frame,
+        });
+        let air = Air::new(once.into_iter(), AirOptions::default());
+        Box::new(Player::new(air, &FrontEnd::ADSBEE_1090))
+    });
+    let other = Board::resume(&mut file.as_slice(), Some(&other));
+    assert!(matches!(other, Err(snapshot::Error::OtherSource)));
     refuses_what_is_no_snapshot_of_this_build(file);
     // A word of the ring changed in one is not changed in the other.
     let before = fork.chip.bus.sram[0];

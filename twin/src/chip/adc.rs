@@ -84,7 +84,7 @@ impl AnalogInput for Steady {
     }
 
     fn part(&self) -> Option<Part> {
-        Some(Part::Steady(self.clone()))
+        Some(Part::Steady(*self))
     }
 }
 

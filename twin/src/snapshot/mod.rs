@@ -39,6 +39,10 @@ pub enum Error {
         "the board was hearing something; give the same recording, log or scene with the same options again"
     )]
     WithoutSource,
+    #[error(
+        "the board was hearing something else; give the same recording, log or scene with the same options again"
+    )]
+    OtherSource,
     #[error(transparent)]
     Io(#[from] io::Error),
 }
@@ -85,7 +89,9 @@ impl Board {
             postcard::from_bytes(body).map_err(|e| Error::Damaged(e.to_string()))?;
         if board.chip.bus.pins.plays() {
             let again = again.ok_or(Error::WithoutSource)?;
-            board.chip.bus.pins.resume_playback(again);
+            if !board.chip.bus.pins.resume_playback(again) {
+                return Err(Error::OtherSource);
+            }
         }
         Ok(board)
     }

@@ -33,7 +33,7 @@ impl AnalogInput for TriggerLevel {
     }
 
     fn part(&self) -> Option<Part> {
-        Some(Part::TriggerLevel(self.clone()))
+        Some(Part::TriggerLevel(*self))
     }
 }
 

@@ -21,6 +21,8 @@ pub(super) struct Repeated {
     asked: Vec<(u64, Option<f64>)>,
     /// Trigger level told since the last question.
     told: Option<f64>,
+    /// Mark of all edges it gave, so that another source is noticed.
+    given: u64,
 }
 
 impl Repeated {
@@ -31,6 +33,7 @@ impl Repeated {
             again: None,
             asked: Vec::new(),
             told: None,
+            given: 0,
         }
     }
 
@@ -52,10 +55,12 @@ impl Repeated {
     }
 
     pub(super) fn next_edges(&mut self, until_ps: u64, out: &mut Vec<Edge>) {
+        let known = out.len();
+        self.source.next_edges(until_ps, out);
         if self.again.is_some() {
             self.asked.push((until_ps, self.told.take()));
+            self.given = marked(self.given, &out[known..]);
         }
-        self.source.next_edges(until_ps, out);
     }
 
     pub(super) fn finished(&self) -> bool {
@@ -84,12 +89,14 @@ impl Repeated {
     /// The source made anew, and told and asked what the first one was.
     fn repeat(again: &Again, asked: &[(u64, Option<f64>)], told: Option<f64>) -> Self {
         let mut source = again();
+        let mut given = 0;
         let mut gone = Vec::new();
         for (until_ps, told) in asked {
             if let Some(mv) = told {
                 source.set_trigger_level_mv(*mv);
             }
             source.next_edges(*until_ps, &mut gone);
+            given = marked(given, &gone);
             gone.clear();
         }
         if let Some(mv) = told {
@@ -100,20 +107,34 @@ impl Repeated {
             again: Some(Arc::clone(again)),
             asked: asked.to_vec(),
             told,
+            given,
         }
     }
 
-    /// What was read from a snapshot plays on, once the source is given.
-    pub(super) fn resume(&mut self, again: &Again) {
-        *self = Self::repeat(again, &self.asked, self.told);
+    /// What was read from a snapshot plays on, once the source is given. False, and nothing changed, if it is another one.
+    pub(super) fn resume(&mut self, again: &Again) -> bool {
+        let repeated = Self::repeat(again, &self.asked, self.told);
+        let same = repeated.given == self.given;
+        if same {
+            *self = repeated;
+        }
+        same
     }
 }
 
-/// What a snapshot keeps of a source: what it was asked and told.
+/// The mark with these edges after it.
+fn marked(mark: u64, edges: &[Edge]) -> u64 {
+    edges.iter().fold(mark, |mark, edge| {
+        (mark ^ edge.at_ps << 1 ^ u64::from(edge.level)).wrapping_mul(0x100_0000_01b3)
+    })
+}
+
+/// What a snapshot keeps of a source: what it was asked and told, and the mark of what it gave.
 #[derive(Serialize, Deserialize)]
 struct Asked {
     asked: Vec<(u64, Option<f64>)>,
     told: Option<f64>,
+    given: u64,
 }
 
 impl Serialize for Repeated {
@@ -123,10 +144,17 @@ impl Serialize for Repeated {
                 "what plays into PULSES cannot be repeated",
             ));
         }
-        let Self { asked, told, .. } = self;
+        let Self {
+            source: _,
+            again: _,
+            asked,
+            told,
+            given,
+        } = self;
         Asked {
             asked: asked.clone(),
             told: *told,
+            given: *given,
         }
         .serialize(to)
     }
@@ -134,12 +162,13 @@ impl Serialize for Repeated {
 
 impl<'de> Deserialize<'de> for Repeated {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let Asked { asked, told } = Asked::deserialize(from)?;
+        let Asked { asked, told, given } = Asked::deserialize(from)?;
         Ok(Self {
             source: Box::new(NotYet),
             again: None,
             asked,
             told,
+            given,
         })
     }
 }

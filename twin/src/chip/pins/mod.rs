@@ -165,11 +165,9 @@ impl Pins {
         self.playback.is_some()
     }
 
-    /// Gives a chip that was read from a snapshot the source that it was playing.
-    pub fn resume_playback(&mut self, again: &Again) {
-        if let Some(playback) = &mut self.playback {
-            playback.resume(again);
-        }
+    /// Gives a chip that was read from a snapshot the source that it was playing. False if it is another one.
+    pub fn resume_playback(&mut self, again: &Again) -> bool {
+        self.playback.as_mut().is_none_or(|p| p.resume(again))
     }
 
     /// Whether what plays, if anything does, can be repeated for a copy of the chip.

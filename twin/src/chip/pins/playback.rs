@@ -150,8 +150,8 @@ impl Playback {
     }
 
     /// Whether a copy can be made.
-    pub(super) fn resume(&mut self, again: &Again) {
-        self.source.resume(again);
+    pub(super) fn resume(&mut self, again: &Again) -> bool {
+        self.source.resume(again)
     }
 
     pub(super) fn is_repeatable(&self) -> bool {
