@@ -15,19 +15,16 @@
 //! Source: the ADSBee 1090 document, section 4.1.
 
 use crate::Full;
-use crate::ecat::csbee_ecat;
+use crate::crc16::end_with_comma;
+use crate::ecat;
 use crate::moment::Moment;
 use crate::statistics::Statistics;
 use crate::sysinfo::sysinfo;
 use crate::text::{Text, whole_decibels, whole_knots};
-use crc::{CRC_16_IBM_3740, Crc, Table};
 use tracker::{Aircraft, Field};
 
 /// A slice that holds any aircraft or statistics line.
 pub const MAX_LINE: usize = 128;
-
-/// One table of 512 bytes.
-static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_3740);
 
 /// FLAGS bits, the document's 4.1.1.1.
 mod flag {
@@ -74,29 +71,29 @@ pub fn aircraft(aircraft: &Aircraft, moment: &Moment, out: &mut [u8]) -> Result<
     if let Some(squawk) = aircraft.squawk() {
         line.octal4(squawk)?;
     }
-    let category = aircraft.category().map(csbee_ecat);
-    decimal_field(&mut line, category.map(i32::from))?;
+    let category = aircraft.category().map(ecat::csbee);
+    line.decimal_field(category.map(i32::from))?;
     let position = aircraft.position(now_ms);
-    degrees_field(&mut line, position.map(|place| place.latitude))?;
-    degrees_field(&mut line, position.map(|place| place.longitude))?;
-    decimal_field(&mut line, aircraft.baro_altitude(now_ms).map(|a| a.0))?;
-    decimal_field(&mut line, aircraft.gnss_altitude(now_ms).map(|a| a.0))?;
+    line.degrees_field(position.map(|place| place.latitude))?;
+    line.degrees_field(position.map(|place| place.longitude))?;
+    line.decimal_field(aircraft.baro_altitude(now_ms).map(|a| a.0))?;
+    line.decimal_field(aircraft.gnss_altitude(now_ms).map(|a| a.0))?;
     let track = aircraft.track(now_ms).map(|t| t.whole_degrees());
-    decimal_field(&mut line, track.map(i32::from))?;
+    line.decimal_field(track.map(i32::from))?;
     let speed = aircraft.ground_speed_eighths(now_ms);
-    decimal_field(&mut line, speed.map(whole_knots))?;
+    line.decimal_field(speed.map(whole_knots))?;
     let rate = aircraft.vertical_rate(now_ms);
-    decimal_field(&mut line, rate.map(|rate| i32::from(rate.feet_per_minute)))?;
-    decimal_field(&mut line, aircraft.level_cdbm().map(whole_decibels))?;
-    decimal_field(&mut line, aircraft.quality_cdb().map(whole_decibels))?;
+    line.decimal_field(rate.map(|rate| i32::from(rate.feet_per_minute)))?;
+    line.decimal_field(aircraft.level_cdbm().map(whole_decibels))?;
+    line.decimal_field(aircraft.quality_cdb().map(whole_decibels))?;
     let counts = aircraft.counts_last_second();
-    decimal_field(&mut line, Some(i32::from(counts.mode_ac)))?;
-    decimal_field(&mut line, Some(i32::from(counts.mode_s)))?;
+    line.decimal_field(Some(i32::from(counts.mode_ac)))?;
+    line.decimal_field(Some(i32::from(counts.mode_s)))?;
     line.byte(b',')?;
     if let Some(sysinfo) = sysinfo(aircraft, now_ms) {
         line.hex(sysinfo, 1)?;
     }
-    end(line)
+    end_with_comma(line)
 }
 
 /// The `#S` line.
@@ -110,34 +107,11 @@ pub fn statistics(statistics: &Statistics, out: &mut [u8]) -> Result<usize, Full
         statistics.stamp_clock_hz,
     ];
     for field in fields {
-        if let Some(value) = field {
-            line.digits(value, 1)?;
-        }
+        line.count(field)?;
         line.byte(b',')?;
     }
     line.digits(statistics.uptime_s, 1)?;
-    end(line)
-}
-
-/// The last comma, CRC and line end.
-fn end(mut line: Text<'_>) -> Result<usize, Full> {
-    line.byte(b',')?;
-    let crc = CRC.checksum(line.written()).swap_bytes();
-    line.hex(u32::from(crc), 4)?;
-    line.bytes(b"\r\n")?;
-    Ok(line.len())
-}
-
-/// A comma and a decimal integer.
-fn decimal_field(line: &mut Text<'_>, value: Option<i32>) -> Result<(), Full> {
-    line.byte(b',')?;
-    value.map_or(Ok(()), |value| line.decimal(value))
-}
-
-/// A comma and degrees.
-fn degrees_field(line: &mut Text<'_>, angle: Option<i32>) -> Result<(), Full> {
-    line.byte(b',')?;
-    angle.map_or(Ok(()), |angle| line.degrees(angle))
+    end_with_comma(line)
 }
 
 fn flags(aircraft: &Aircraft, now_ms: u64) -> u32 {

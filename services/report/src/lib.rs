@@ -18,18 +18,40 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod aero;
+mod altitude_order;
+pub mod asterix;
+mod asterix_record;
 pub mod beast;
+mod crc16;
 pub mod csbee;
-mod ecat;
+pub mod ecat;
+mod emergency;
 mod frame_report;
+pub mod gdl90;
+mod gdl90_frame;
 mod gnss;
+pub mod json;
+mod json_aircraft;
+mod json_gnss;
+mod json_object;
 pub mod level;
+pub mod mavlink;
 mod moment;
+pub mod nmea;
+#[cfg(test)]
+mod property_tests;
+pub mod radarcape;
 pub mod raw;
+mod sine;
 mod statistics;
 mod sysinfo;
+#[cfg(test)]
+mod test_aircraft;
 mod text;
+mod units;
 
+pub use altitude_order::AltitudeOrder;
 pub use frame_report::{Bits, FrameReport, FrameTimes};
 pub use gnss::Gnss;
 pub use moment::{DAY_MS, Moment};

@@ -29,6 +29,9 @@ mod part {
     pub const GREATEST_DIMENSION: u32 = 22;
 }
 
+/// NICNAC's bits of SYSINFO.
+const NICNAC: u32 = 0xFFF;
+
 /// SYSINFO, where a position, a velocity or a status message has told something of it.
 pub(crate) fn sysinfo(aircraft: &Aircraft, now_ms: u64) -> Option<u32> {
     let airframe = aircraft.airframe();
@@ -44,6 +47,11 @@ pub(crate) fn sysinfo(aircraft: &Aircraft, now_ms: u64) -> Option<u32> {
         (airframe.greatest_m().unwrap_or(0), part::GREATEST_DIMENSION),
     ];
     Some(parts.into_iter().fold(quality.unwrap_or(0), pack))
+}
+
+/// NICNAC, where a position, a velocity or a status message has told something of it.
+pub(crate) fn nicnac(aircraft: &Aircraft, now_ms: u64) -> Option<u32> {
+    quality(aircraft, now_ms).map(|word| word & NICNAC)
 }
 
 /// The parts below the airframe's.

@@ -45,6 +45,50 @@ impl<'a> Text<'a> {
         bytes.iter().try_for_each(|&byte| self.byte(byte))
     }
 
+    /// A comma and a decimal integer, or nothing.
+    pub(crate) fn decimal_field(&mut self, value: Option<i32>) -> Result<(), Full> {
+        self.byte(b',')?;
+        value.map_or(Ok(()), |value| self.decimal(value))
+    }
+
+    /// A comma and degrees with five decimals, or nothing.
+    pub(crate) fn degrees_field(&mut self, angle: Option<i32>) -> Result<(), Full> {
+        self.byte(b',')?;
+        angle.map_or(Ok(()), |angle| self.degrees(angle))
+    }
+
+    /// A count, or nothing.
+    pub(crate) fn count(&mut self, value: Option<u32>) -> Result<(), Full> {
+        value.map_or(Ok(()), |value| self.digits(value, 1))
+    }
+
+    /// Tenths as a number with one decimal.
+    pub(crate) fn tenths(&mut self, value: u16) -> Result<(), Full> {
+        self.digits(u32::from(value / 10), 1)?;
+        self.byte(b'.')?;
+        self.digits(u32::from(value % 10), 1)
+    }
+
+    /// `value` / 10^`decimals` without trailing zeros, at most nine decimals.
+    pub(crate) fn scaled(&mut self, value: i32, decimals: usize) -> Result<(), Full> {
+        if value < 0 {
+            self.byte(b'-')?;
+        }
+        let one = 10u32.pow(decimals as u32);
+        let (whole, mut part) = (value.unsigned_abs() / one, value.unsigned_abs() % one);
+        self.digits(whole, 1)?;
+        if part == 0 {
+            return Ok(());
+        }
+        let mut places = decimals;
+        while part % 10 == 0 {
+            part /= 10;
+            places -= 1;
+        }
+        self.byte(b'.')?;
+        self.digits(part, places)
+    }
+
     /// Upper-case hexadecimal, at least `digits` long.
     pub(crate) fn hex(&mut self, value: u32, digits: u32) -> Result<(), Full> {
         let needed = (32 - value.leading_zeros()).div_ceil(4).max(digits).max(1);
@@ -165,6 +209,23 @@ mod tests {
         ] {
             assert_eq!(written(|t| t.degrees(angle)), text, "{angle}");
         }
+    }
+
+    #[test]
+    fn scaled_numbers_have_no_trailing_zeros() {
+        for (value, decimals, text) in [
+            (0, 2, "0"),
+            (528_000, 3, "528"),
+            (-10_500, 3, "-10.5"),
+            (10_125, 3, "10.125"),
+            (-5, 2, "-0.05"),
+            (i32::MIN, 7, "-214.7483648"),
+            (100, 0, "100"),
+        ] {
+            assert_eq!(written(|t| t.scaled(value, decimals)), text);
+        }
+        assert_eq!(written(|t| t.tenths(121)), "12.1");
+        assert_eq!(written(|t| t.tenths(1_000)), "100.0");
     }
 
     #[test]

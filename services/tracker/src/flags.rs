@@ -20,6 +20,8 @@ pub(crate) enum Flag {
     Confirmed,
     /// An extended squitter was heard.
     HasSquitters,
+    /// The heading is from magnetic north.
+    HeadingIsMagnetic,
     Autopilot,
     Vnav,
     AltitudeHold,

@@ -15,6 +15,7 @@
 
 use crate::aircraft::Aircraft;
 use crate::field::Field;
+use crate::flags::Flag;
 use mode_s::bds::bds17::{ANNOUNCED, GicbCapability};
 use mode_s::bds::bds40::SelectedVerticalIntention;
 use mode_s::bds::bds50::TrackAndTurn;
@@ -139,6 +140,7 @@ impl Aircraft {
     fn hear_heading_and_speed(&mut self, told: &HeadingAndSpeed, at_ms: u64) {
         if let Some(heading) = told.heading {
             self.heading = heading;
+            self.flags.set(Flag::HeadingIsMagnetic, true);
             self.tell(Field::Heading, at_ms);
         }
         if let Some(knots) = told.indicated_airspeed_kt {

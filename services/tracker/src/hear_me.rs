@@ -93,6 +93,10 @@ impl Aircraft {
             Some(HorizontalVelocity::Air { heading, airspeed }) => {
                 if let Some(heading) = heading {
                     self.heading = heading;
+                    // HRD says it from version 1 on; in version 0 headings are magnetic.
+                    let hrd = self.status(at_ms).map(|status| status.magnetic_heading());
+                    let is_magnetic = self.version == 0 || hrd == Some(true);
+                    self.flags.set(Flag::HeadingIsMagnetic, is_magnetic);
                     self.tell(Field::Heading, at_ms);
                 }
                 match airspeed.map(|speed| (speed.is_true, speed.knots)) {

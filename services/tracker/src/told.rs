@@ -9,6 +9,7 @@ use crate::field::{Field, Updated};
 use crate::flags::Flag;
 use crate::status::{Airframe, Status};
 use mode_s::nic::nic;
+use mode_s::quality::nucp;
 use mode_s::{Address, AltitudeFt, AutopilotModes, Callsign, Category, CentiDegrees};
 use mode_s::{EmergencyState, ModeACode, NicSupplements, Position, VerticalRate};
 
@@ -96,6 +97,11 @@ impl Aircraft {
     /// Heading: of aircraft that send no track, and of Comm-B replies (there magnetic).
     pub fn heading(&self, now_ms: u64) -> Option<CentiDegrees> {
         self.told(Field::Heading, self.heading, now_ms)
+    }
+
+    /// Whether the heading is from magnetic north, not from true north.
+    pub fn heading_is_magnetic(&self) -> bool {
+        self.flags.has(Flag::HeadingIsMagnetic)
     }
 
     /// Indicated airspeed, knots.
@@ -223,6 +229,11 @@ impl Aircraft {
             ..self.nic_supplements(now_ms)
         };
         Some(nic(type_code, self.version, supplements))
+    }
+
+    /// NUCp of the last position message, as version 0 means its type code.
+    pub fn nucp(&self, now_ms: u64) -> Option<u8> {
+        self.told(Field::Integrity, nucp(self.position_type_code), now_ms)
     }
 
     /// NIC supplements A and C, as far as they are known; B comes with each position.
