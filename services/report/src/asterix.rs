@@ -265,9 +265,9 @@ fn weather_and_intent(record: &mut Target, aircraft: &Aircraft, now_ms: u64) {
     let wind = aircraft.wind(now_ms);
     let temperature = aircraft.temperature_centidegrees(now_ms);
     let turbulence = aircraft.turbulence(now_ms);
-    let present = u8::from(wind.is_some()) * 0b1100_0000
-        | u8::from(temperature.is_some()) << 5
-        | u8::from(turbulence.is_some()) << 4;
+    let wind_present = if wind.is_some() { 0b1100_0000 } else { 0 };
+    let present =
+        wind_present | u8::from(temperature.is_some()) << 5 | u8::from(turbulence.is_some()) << 4;
     if present != 0 {
         let mut octets = [present; 8];
         let mut length = 1;
