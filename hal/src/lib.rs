@@ -8,6 +8,7 @@
 //! | [`board`] | pins by net name | IO_BANK0, PADS_BANK0 |
 //! | [`pio_sampler`] | PULSES at 8 Msps, 32 samples a word | PIO0 SM0 |
 //! | [`dma_ring`] | a ring that DMA fills for ever | DMA channels 0 and 1, INTS1 |
+//! | [`i2c`] | EEPROM's bus, every wait with an end | I2C1, IO_BANK0 and SIO of its pins |
 //! | [`timer`] | microseconds, one alarm | TIMER |
 //! | [`uart`] | COMMS_UART, both ways by DMA | UART1, DMA channels 9 to 11, INTS0 |
 //! | [`usb`] | the console's CDC ACM port | USBCTRL |
@@ -30,6 +31,7 @@ pub mod core1;
 pub mod dma_ring;
 pub mod flash;
 mod hard_fault;
+pub mod i2c;
 pub mod kept;
 pub mod parts;
 pub mod pio_sampler;

@@ -3,7 +3,7 @@
 //! | GPIO | net | used by | function |
 //! |---|---|---|---|
 //! | 0, 1 | GNSS_UART TX, RX | nobody yet | – |
-//! | 2, 3 | EEPROM SDA, SCL (I2C1) | nobody yet | – |
+//! | 2, 3 | EEPROM SDA, SCL (I2C1), pulled up | `i2c` | I2C1 |
 //! | 4, 5 | COMMS_UART TX, RX | `uart` | UART1 |
 //! | 6, 7, 8 | SUBG_EN, SUBG_IRQ, SUBG_CS (sub-GHz radio) | nobody | – |
 //! | 9 | ESP32_CS | nobody yet | – |
