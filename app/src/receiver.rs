@@ -19,7 +19,7 @@ use core::fmt;
 use core::sync::atomic::Ordering;
 use demod::RawFrame;
 use drivers::pulse_capture::CaptureCounters;
-use hal::board::adsbee_1090::LED_GPIO;
+use hal::board::LED_GPIO;
 use hal::{boot, timer, watchdog};
 use heapless::spsc::Consumer;
 use mode_s::Message;

@@ -2,7 +2,7 @@
 
 use boot_core::session::{Machine, Port, Session};
 use embedded_hal::digital::{InputPin, OutputPin};
-use hal::board::adsbee_1090::{BootConfig, Led};
+use hal::board::{BootConfig, Led};
 use hal::flash::Flash;
 use hal::uart::CommsUart;
 use hal::usb::UsbConsole;

@@ -20,7 +20,6 @@
 
 mod machine;
 
-use boot_contract::BOARD_ADSBEE_1090;
 use boot_contract::flash_map::XIP_BASE;
 use boot_contract::hand_over::{Cause, HandOver};
 use boot_contract::log_store::BootLog;
@@ -81,7 +80,7 @@ fn session(parts: Parts, cause: Cause, locked: bool) -> Option<Outcome> {
     let mut board = Board::new(parts)?;
     let log = BootLog::open(&mut board.flash).ok()?;
     let terms = Terms {
-        board: BOARD_ADSBEE_1090,
+        board: hal::board::NAME,
         keys: Keys(&KEYS),
         floor: 0,
     };

@@ -5,17 +5,23 @@
 //! | [`pulse_capture`] | comparator output PULSES | PIO sampler and DMA ring |
 //! | [`word_clock`] | – | the arithmetic behind it, pure |
 //! | [`trigger_level`] | comparator threshold | PWM through an RC; set only, the ADC that reads it back comes later |
+//! | [`eeprom`] | EEPROM M24C64 | I2C |
+//! | [`rx_gain`] | potentiometer of the receive gain, revision E | I2C |
+//! | [`switch`] | bias tee, the ESP32's supply | pin |
 //! | [`led`] | status LED | pin |
 //!
-//! Not here yet: EEPROM, GNSS, ESP32, receive gain, level and RSSI by ADC.
+//! Not here yet: GNSS, the ESP32's link, level and RSSI by ADC.
 #![no_std]
 #![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;
 
+pub mod eeprom;
 pub mod led;
 #[cfg(target_os = "none")]
 pub mod pulse_capture;
+pub mod rx_gain;
+pub mod switch;
 pub mod trigger_level;
 pub mod word_clock;

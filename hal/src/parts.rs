@@ -5,10 +5,11 @@
 //!   watchdog tick 1 MHz ─ TIMER, DMA, PIO0, UART1, PWM out of reset ─ pins by net name ─ ports
 //! ```
 
-use crate::board::adsbee_1090::{self, PULSES_GPIO, Pins, TriggerLevelSlice};
+use crate::board::{self, PULSES_GPIO, TriggerLevelLowPwm, TriggerLevelPwm};
 use crate::core1::Core1;
 use crate::dma_ring::DmaChannels;
 use crate::flash::{self, Flash, UNIQUE_ID};
+use crate::i2c::I2c1;
 use crate::pio_sampler::PioSampler;
 use crate::uart::CommsUart;
 use crate::usb::UsbConsole;
@@ -16,7 +17,7 @@ use crate::watchdog::Watchdog;
 use rp2040_hal::clocks::{ClocksManager, UsbClock};
 use rp2040_hal::fugit::HertzU32;
 use rp2040_hal::pll::{PLLConfig, common_configs::PLL_USB_48MHZ, setup_pll_blocking};
-use rp2040_hal::pwm::{self, FreeRunning};
+use rp2040_hal::pwm::Slices;
 use rp2040_hal::usb::UsbBus;
 use rp2040_hal::{Sio, gpio, pac, xosc::setup_xosc_blocking};
 
@@ -37,19 +38,6 @@ const PLL_SYS_120MHZ: PLLConfig = PLLConfig {
 /// Counts a period of the trigger level's PWM: 120 MHz / 5000 = 24 kHz.
 pub const TRIGGER_LEVEL_PERIOD: u16 = 5000;
 
-/// The trigger level's PWM channel.
-pub type TriggerLevelPwm = pwm::Channel<pwm::Slice<TriggerLevelSlice, FreeRunning>, pwm::B>;
-
-/// Starts the trigger level's PWM: `counts` system cycles a period, duty 0.
-fn trigger_level_pwm(
-    mut slice: pwm::Slice<TriggerLevelSlice, FreeRunning>,
-    counts: u16,
-) -> TriggerLevelPwm {
-    slice.set_top(counts.saturating_sub(1));
-    slice.enable();
-    slice.channel_b
-}
-
 /// USB before the host sees it.
 pub struct UsbParts {
     bus: UsbBus,
@@ -66,11 +54,19 @@ impl UsbParts {
 /// What the chip and the board offer, each once.
 pub struct Parts {
     /// Pins by net name that a driver takes; the rest are wired already.
-    pub led: adsbee_1090::Led,
+    pub led: board::Led,
     /// BOOT/CONFIG pin.
-    pub boot_config: adsbee_1090::BootConfig,
+    pub boot_config: board::BootConfig,
     /// Trigger level PWM, running at duty 0.
     pub trigger_level: TriggerLevelPwm,
+    /// The second level's, on boards that have one.
+    pub trigger_level_low: Option<TriggerLevelLowPwm>,
+    /// Bias tee, off.
+    pub bias_tee: Option<board::BiasTee>,
+    /// The ESP32's supply, off.
+    pub esp32_enable: Option<board::Esp32Enable>,
+    /// The bus of EEPROM and potentiometer.
+    pub i2c: Option<I2c1>,
     /// PULSES sampler, stopped.
     pub sampler: PioSampler,
     /// Two DMA channels for its ring.
@@ -81,6 +77,8 @@ pub struct Parts {
     pub usb: UsbParts,
     /// The flash of the smallest board, 2 MiB.
     pub flash: Flash,
+    /// The same, for whoever keeps the settings in it: each keeps to its own area.
+    pub settings_flash: Flash,
     /// The flash part's unique id: the device's serial number.
     pub unique_id: [u8; UNIQUE_ID],
     /// The watchdog, not started.
@@ -138,13 +136,15 @@ impl Parts {
 
         let unique_id = flash::unique_id();
         let sio = Sio::new(p.SIO);
-        let pins = Pins::new(gpio::Pins::new(
+        let pins = board::pins(gpio::Pins::new(
             p.IO_BANK0,
             p.PADS_BANK0,
             sio.gpio_bank0,
             &mut resets,
         ));
-        let slices = pwm::Slices::new(p.PWM, &mut resets);
+        let slices = Slices::new(p.PWM, &mut resets);
+        let (trigger_level, trigger_level_low) =
+            board::trigger_levels(slices, TRIGGER_LEVEL_PERIOD);
         let usb_clock: UsbClock = clocks.usb_clock;
         let bus = UsbBus::new(
             p.USBCTRL_REGS,
@@ -157,12 +157,17 @@ impl Parts {
         Some(Self {
             led: pins.led,
             boot_config: pins.boot_config,
-            trigger_level: trigger_level_pwm(slices.pwm4, TRIGGER_LEVEL_PERIOD),
+            trigger_level,
+            trigger_level_low,
+            bias_tee: pins.bias_tee,
+            esp32_enable: pins.esp32_enable,
+            i2c: pins.i2c.map(|_| I2c1::new(p.I2C1)),
             sampler: PioSampler::new(p.PIO0, PULSES_GPIO),
             dma: DmaChannels { dma: p.DMA },
             comms_uart: CommsUart::comms(p.UART1, COMMS_BAUD),
             usb: UsbParts { bus, unique_id },
             flash: Flash::new(FLASH_BYTES),
+            settings_flash: Flash::new(FLASH_BYTES),
             unique_id,
             watchdog: Watchdog::new(watchdog),
             core1: Core1 {

@@ -7,7 +7,8 @@
 //! 0x012000  device data  8 KiB       reserved, nothing writes it yet
 //! 0x014000  slot A       header 4 KiB, image 968 KiB
 //! 0x107000  slot B       the same
-//! 0x1FA000  rest         24 KiB      reserved
+//! 0x1FA000  free         8 KiB
+//! 0x1FC000  settings     4 x 4 KiB   on boards without an EEPROM
 //! ```
 
 /// Where the flash appears in the address space (RP2040 datasheet, 2.2: XIP base).
@@ -37,6 +38,8 @@ pub const HEADER_AREA: u32 = 0x1000;
 pub const IMAGE_MAX: u32 = 968 * 1024;
 /// Offset of the area behind slot B.
 pub const REST: u32 = 0x1F_A000;
+/// Offset of the settings on boards without an EEPROM: four banks of a sector each (`services/store`).
+pub const SETTINGS: u32 = 0x1F_C000;
 /// Size of the smallest flash part, bytes.
 pub const FLASH_LEN: u32 = 2 * 1024 * 1024;
 
@@ -78,7 +81,8 @@ mod tests {
         assert_eq!(DEVICE_DATA + 0x2000, SLOT_A.header);
         assert_eq!(SLOT_A.image + IMAGE_MAX, SLOT_B.header);
         assert_eq!(SLOT_B.image + IMAGE_MAX, REST);
-        assert_eq!(REST + 24 * 1024, FLASH_LEN);
+        assert_eq!(REST + 2 * SECTOR, SETTINGS);
+        assert_eq!(SETTINGS + 4 * SECTOR, FLASH_LEN);
     }
 
     #[test]

@@ -8,12 +8,13 @@
 //! | 6, 7, 8 | SUBG_EN, SUBG_IRQ, SUBG_CS (sub-GHz radio) | nobody | – |
 //! | 9 | ESP32_CS | nobody yet | – |
 //! | 10, 11, 12 | ESP32 SPI1 CLK, MOSI, MISO | nobody yet | – |
-//! | 13, 14 | ESP32_HANDSHAKE, ESP32_EN | nobody yet | – |
+//! | 13 | ESP32_HANDSHAKE | nobody yet | – |
+//! | 14 | ESP32_EN, high = on | `drivers::switch` | SIO out |
 //! | 15 | LED | `drivers::led` | SIO out |
 //! | 16, 17 | ESP32_UART TX, RX | nobody yet | – |
-//! | 18 | BIAS_TEE_EN_N, active low | held high: off | SIO out |
+//! | 18 | BIAS_TEE_EN_N, active low | `drivers::switch` | SIO out |
 //! | 19 | PULSES, the comparator's output | `pio_sampler` | PIO0 in |
-//! | 20 | BOOT_CONFIG (free pin, so named by a ruling), pulled up | bootloader | SIO in |
+//! | 20 | BOOT_CONFIG (free pin, so named by a ruling), pulled up | bootloader, app | SIO in |
 //! | 21-24 | free | nobody | – |
 //! | 25 | TRIGGER_LEVEL, PWM through an RC | `drivers::trigger_level` | PWM4 B |
 //! | 26 | GNSS_PPS | nobody yet | – |
@@ -21,61 +22,62 @@
 //!
 //! Source: the hardware facts in the project's ADSBee reference notes. Pins that nobody uses stay as reset leaves them.
 
-use rp2040_hal::gpio::bank0::{Gpio4, Gpio5, Gpio15, Gpio18, Gpio19, Gpio20, Gpio25};
-use rp2040_hal::gpio::{
-    self, FunctionPio0, FunctionPwm, FunctionSioInput, FunctionSioOutput, FunctionUart, Pin,
-    PinState, PullDown, PullNone, PullUp,
-};
+use super::Pins;
+use rp2040_hal::gpio::bank0::{Gpio24, Gpio25};
+use rp2040_hal::gpio::{self, FunctionPwm, Pin, PinState, PullNone};
+use rp2040_hal::pwm::{A, B, Channel, FreeRunning, Pwm4, Slice, Slices};
 
-/// GPIO of PULSES: the PIO program's input base.
-pub const PULSES_GPIO: u8 = 19;
+/// The board's name, as an image's header has it: ASCII, zero-padded.
+pub const NAME: [u8; 16] = *b"adsbee_1090\0\0\0\0\0";
 
-/// GPIO of the status LED.
-pub const LED_GPIO: u8 = 15;
+/// Whether the EEPROM M24C64 is fitted.
+pub const HAS_EEPROM: bool = true;
+/// Whether the receive gain's potentiometer is fitted.
+pub const HAS_POTENTIOMETER: bool = false;
 
-/// Status LED, high = on.
-pub type Led = Pin<Gpio15, FunctionSioOutput, PullNone>;
-/// BOOT/CONFIG, low = held.
-pub type BootConfig = Pin<Gpio20, FunctionSioInput, PullUp>;
 /// Trigger level.
 pub type TriggerLevel = Pin<Gpio25, FunctionPwm, PullNone>;
-/// PWM slice of TRIGGER_LEVEL (GPIO 25: slice 4, channel B).
-pub type TriggerLevelSlice = rp2040_hal::pwm::Pwm4;
+/// Its PWM: slice 4, channel B.
+pub type TriggerLevelPwm = Channel<Slice<Pwm4, FreeRunning>, B>;
+/// No second level on this board; its type is the other board's.
+pub type TriggerLevelLow = Pin<Gpio24, FunctionPwm, PullNone>;
+/// As above.
+pub type TriggerLevelLowPwm = Channel<Slice<Pwm4, FreeRunning>, A>;
 
-/// The pins in use, by net name.
-pub struct Pins {
-    /// COMMS_UART transmit.
-    pub comms_tx: Pin<Gpio4, FunctionUart, PullNone>,
-    /// COMMS_UART receive; pulled up, so an open line is idle.
-    pub comms_rx: Pin<Gpio5, FunctionUart, PullUp>,
-    /// Status LED.
-    pub led: Led,
-    /// Bias tee, high = off.
-    pub bias_tee_enable_n: Pin<Gpio18, FunctionSioOutput, PullNone>,
-    /// Comparator output. Pulled down: without a comparator the line is quiet.
-    pub pulses: Pin<Gpio19, FunctionPio0, PullDown>,
-    /// BOOT/CONFIG.
-    pub boot_config: BootConfig,
-    /// Trigger level PWM.
-    pub trigger_level: TriggerLevel,
-}
-
-impl Pins {
-    pub(crate) fn new(pins: gpio::Pins) -> Self {
-        Self {
-            comms_tx: pins.gpio4.reconfigure(),
-            comms_rx: pins.gpio5.reconfigure(),
-            led: pins
-                .gpio15
-                .into_pull_type()
-                .into_push_pull_output_in_state(PinState::Low),
-            bias_tee_enable_n: pins
-                .gpio18
+/// Gives every pin in use its function.
+pub(crate) fn pins(pins: gpio::Pins) -> Pins {
+    Pins {
+        comms_tx: pins.gpio4.reconfigure(),
+        comms_rx: pins.gpio5.reconfigure(),
+        led: pins
+            .gpio15
+            .into_pull_type()
+            .into_push_pull_output_in_state(PinState::Low),
+        bias_tee: Some(
+            pins.gpio18
                 .into_pull_type()
                 .into_push_pull_output_in_state(PinState::High),
-            pulses: pins.gpio19.reconfigure(),
-            boot_config: pins.gpio20.reconfigure(),
-            trigger_level: pins.gpio25.reconfigure(),
-        }
+        ),
+        esp32_enable: Some(
+            pins.gpio14
+                .into_pull_type()
+                .into_push_pull_output_in_state(PinState::Low),
+        ),
+        i2c: Some((pins.gpio2.reconfigure(), pins.gpio3.reconfigure())),
+        pulses: pins.gpio19.reconfigure(),
+        boot_config: pins.gpio20.reconfigure(),
+        trigger_level: pins.gpio25.reconfigure(),
+        trigger_level_low: None,
     }
+}
+
+/// Starts the trigger level's PWM: `counts` system cycles a period, duty 0.
+pub(crate) fn trigger_levels(
+    slices: Slices,
+    counts: u16,
+) -> (TriggerLevelPwm, Option<TriggerLevelLowPwm>) {
+    let mut slice = slices.pwm4;
+    slice.set_top(counts.saturating_sub(1));
+    slice.enable();
+    (slice.channel_b, None)
 }

@@ -1,0 +1,83 @@
+//! `adsbee_1090u` (1090U, m1090): no EEPROM, settings in flash; GNSS with an enable. Crystal 12 MHz, 16 MiB flash, one trigger level.
+//!
+//! | GPIO | net | used by | function |
+//! |---|---|---|---|
+//! | 0, 1 | GNSS_UART TX, RX | nobody yet | – |
+//! | 2 | GNSS_PPS | nobody yet | – |
+//! | 3 | GNSS_EN | nobody yet | – |
+//! | 4, 5 | COMMS_UART TX, RX | `uart` | UART1 |
+//! | 6, 7, 8 | SUBG_EN, SUBG_IRQ, SUBG_CS (sub-GHz radio) | nobody | – |
+//! | 9 | ESP32_CS | nobody yet | – |
+//! | 10, 11, 12 | ESP32 SPI1 CLK, MOSI, MISO | nobody yet | – |
+//! | 13 | ESP32_HANDSHAKE | nobody yet | – |
+//! | 14 | ESP32_EN, high = on | `drivers::switch` | SIO out |
+//! | 15 | LED | `drivers::led` | SIO out |
+//! | 16, 17 | ESP32_UART TX, RX | nobody yet | – |
+//! | 18 | BIAS_TEE_EN_N, active low | `drivers::switch` | SIO out |
+//! | 19 | PULSES, the comparator's output | `pio_sampler` | PIO0 in |
+//! | 20 | BOOT_CONFIG (free pin), pulled up | bootloader, app | SIO in |
+//! | 21-24 | free | nobody | – |
+//! | 26 | TRIGGER_LEVEL, PWM through an RC | `drivers::trigger_level` | PWM5 A |
+//! | 27, 28 | TRIGGER_LEVEL_ADC (ADC1), RSSI_ADC (ADC2) | nobody yet | – |
+//!
+//! Source: the hardware facts in the project's ADSBee reference notes. Pins that nobody uses stay as reset leaves them.
+
+use super::Pins;
+use rp2040_hal::gpio::bank0::{Gpio24, Gpio26};
+use rp2040_hal::gpio::{self, FunctionPwm, Pin, PinState, PullNone};
+use rp2040_hal::pwm::{A, Channel, FreeRunning, Pwm4, Pwm5, Slice, Slices};
+
+/// The board's name, as an image's header has it: ASCII, zero-padded.
+pub const NAME: [u8; 16] = *b"adsbee_1090u\0\0\0\0";
+
+/// Whether the EEPROM M24C64 is fitted.
+pub const HAS_EEPROM: bool = false;
+/// Whether the receive gain's potentiometer is fitted.
+pub const HAS_POTENTIOMETER: bool = false;
+
+/// Trigger level.
+pub type TriggerLevel = Pin<Gpio26, FunctionPwm, PullNone>;
+/// Its PWM: slice 5, channel A.
+pub type TriggerLevelPwm = Channel<Slice<Pwm5, FreeRunning>, A>;
+/// No second level on this board; its type is the other board's.
+pub type TriggerLevelLow = Pin<Gpio24, FunctionPwm, PullNone>;
+/// As above.
+pub type TriggerLevelLowPwm = Channel<Slice<Pwm4, FreeRunning>, A>;
+
+/// Gives every pin in use its function.
+pub(crate) fn pins(pins: gpio::Pins) -> Pins {
+    Pins {
+        comms_tx: pins.gpio4.reconfigure(),
+        comms_rx: pins.gpio5.reconfigure(),
+        led: pins
+            .gpio15
+            .into_pull_type()
+            .into_push_pull_output_in_state(PinState::Low),
+        bias_tee: Some(
+            pins.gpio18
+                .into_pull_type()
+                .into_push_pull_output_in_state(PinState::High),
+        ),
+        esp32_enable: Some(
+            pins.gpio14
+                .into_pull_type()
+                .into_push_pull_output_in_state(PinState::Low),
+        ),
+        i2c: None,
+        pulses: pins.gpio19.reconfigure(),
+        boot_config: pins.gpio20.reconfigure(),
+        trigger_level: pins.gpio26.reconfigure(),
+        trigger_level_low: None,
+    }
+}
+
+/// Starts the trigger level's PWM: `counts` system cycles a period, duty 0.
+pub(crate) fn trigger_levels(
+    slices: Slices,
+    counts: u16,
+) -> (TriggerLevelPwm, Option<TriggerLevelLowPwm>) {
+    let mut slice = slices.pwm5;
+    slice.set_top(counts.saturating_sub(1));
+    slice.enable();
+    (slice.channel_a, None)
+}
