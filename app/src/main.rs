@@ -23,10 +23,14 @@ mod confirm;
 mod console;
 mod core1;
 mod crash;
+#[allow(dead_code, reason = "the shell's commands call it")]
+mod hardware;
 mod info;
 mod outlets;
 mod receiver;
 mod stats;
+#[allow(dead_code, reason = "the shell's commands call it")]
+mod store;
 
 use boot_contract::hand_over::{Cause, HandOver};
 use confirm::{Confirm, Due};
@@ -42,12 +46,14 @@ use hal::kept::{End, LastWords};
 use hal::parts::TRIGGER_LEVEL_PERIOD;
 use hal::take_once::TakeOnce;
 use hal::{Parts, sleep, timer, watchdog};
+use hardware::Hardware;
 use heapless::spsc::Queue;
 use receiver::{AIRCRAFT, Receiver, SharedCounters, UsbDrive};
 use reporter::Reporter;
 use settings::Settings;
 use settings::choices::Protocol;
 use stats::DecodeCounters;
+use store::SettingsStore;
 use tracker::Tracker;
 
 /// Without a check-in of both loops for this long the chip restarts, microseconds.
@@ -89,6 +95,9 @@ fn start() -> Option<core::convert::Infallible> {
     let mut parts = Parts::take()?;
     parts.watchdog.start(WATCHDOG_US);
     let mut led = Led::new(parts.led);
+    let hardware = Hardware::new(parts.bias_tee, parts.esp32_enable, parts.boot_config);
+    let mut store = SettingsStore::new(parts.i2c, parts.settings_flash);
+    let settings_trouble = store.load().err();
     // A PWM that cannot be set is not a thing on this chip: the error type is empty.
     let _trigger_level = TriggerLevel::new(parts.trigger_level).ok()?;
     let console = parts.usb.attach()?;
@@ -130,6 +139,9 @@ fn start() -> Option<core::convert::Infallible> {
         unique_id: parts.unique_id,
         crash: Crash::at_start(cause),
         usb_drive: UsbDrive::Disabled,
+        store,
+        settings_trouble,
+        hardware,
     };
     // Until settings are stored.
     receiver.settings.console.set_protocol(Protocol::Csbee);

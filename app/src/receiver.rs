@@ -12,8 +12,10 @@ use crate::confirm::Confirm;
 use crate::console::{self, Console};
 use crate::core1::QueueCounters;
 use crate::crash::{Crash, Life};
+use crate::hardware::Hardware;
 use crate::outlets;
 use crate::stats::{DecodeCounters, Line, Stats};
+use crate::store::{SettingsStore, Trouble};
 use boot_contract::hand_over::{Cause, HandOver};
 use core::fmt;
 use core::sync::atomic::Ordering;
@@ -79,6 +81,12 @@ pub struct Receiver {
     /// The last one since power-on.
     pub crash: Option<Crash>,
     pub usb_drive: UsbDrive,
+    /// Where the settings are kept, and why they were not loaded at the start.
+    pub store: SettingsStore,
+    pub settings_trouble: Option<Trouble>,
+    /// The parts that commands act on.
+    #[allow(dead_code, reason = "the shell's commands call it")]
+    pub hardware: Hardware,
 }
 
 /// How the image ends by command.
@@ -261,6 +269,10 @@ impl Receiver {
             queue: &self.shared.queue,
             queue_waiting: self.queue.len(),
             decode: &self.decode,
+            settings_trouble: self.settings_trouble,
+            store: self.store.counts(),
+            store_place: self.store.place(),
+            i2c: self.store.bus().map(|bus| bus.counters),
             tracker: self.tracker.counters(),
             tracked: self.tracker.len(),
             console: self.console.port.counters(),

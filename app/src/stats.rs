@@ -8,6 +8,8 @@
 //!   +STATS=QUEUE,offered=..,queued=..,dropped=..,waiting=..
 //!   +STATS=DECODE,offered=..,exact=..,..
 //!   +STATS=TRACKER,offered=..,born=..,..        see services/tracker
+//!   +STATS=STORE,saves=..,..,place=..,loaded=.. saves: since the first; a bank's pages were written a quarter as often
+//!   +STATS=I2C,transfers=..,refused=..,..       on boards that have the bus
 //!   +STATS=CONSOLE,offered=..,sent=..,dropped=..,bytes=..,frames=..,frames_dropped=..,aircraft=..,..,commands=..,commands_lost=..
 //!   +STATS=COMMS_UART,the same,received=..,received_lost=..
 //! ```
@@ -20,11 +22,13 @@
 //! | QUEUE queued = DECODE offered + QUEUE waiting |
 //! | DECODE offered = exact + interrogator + address + broken + unjudged = TRACKER offered |
 //! | TRACKER offered = born + updated + duplicate + unknown_address + no_address + no_place + broken + not_tracked |
+//! | STORE saved + unchanged + failed = saves asked for |
 //! | each port: offered = sent + dropped = sum over frames, aircraft, statistics, gnss and replies |
 //!
 //! All counters are 32 bits and wrap.
 
 use crate::core1::QueueCounters;
+use crate::store::Trouble;
 use boot_contract::boot_log::SlotName;
 use boot_contract::hand_over::Cause;
 use core::fmt::{self, Write};
@@ -55,6 +59,11 @@ pub struct Stats<'a> {
     pub queue: &'a QueueCounters,
     pub queue_waiting: usize,
     pub decode: &'a DecodeCounters,
+    /// Number of the newest save, and what was counted since the start.
+    pub store: (u32, ::store::Counters),
+    pub store_place: &'static str,
+    pub settings_trouble: Option<Trouble>,
+    pub i2c: Option<hal::i2c::Counters>,
     pub tracker: tracker::Counters,
     pub tracked: usize,
     pub console: PortCounters,
@@ -177,6 +186,7 @@ impl Stats<'_> {
                 ("tracked", self.tracked as u32),
             ],
         ));
+        self.settings(&mut out);
         out(port("CONSOLE", &self.console).and_then(|mut line| {
             write!(
                 line,
@@ -193,6 +203,38 @@ impl Stats<'_> {
             )?;
             Ok(line)
         }));
+    }
+
+    /// Where the settings are kept, and the bus to it.
+    fn settings(&self, out: &mut impl FnMut(Result<Line, fmt::Error>)) {
+        let (number, counters) = self.store;
+        let loaded = self.settings_trouble.map_or("ok", Trouble::name);
+        out(line(
+            "STORE",
+            &[
+                ("saves", number),
+                ("saved", counters.saved),
+                ("unchanged", counters.unchanged),
+                ("failed", counters.failed),
+                ("pages", counters.pages),
+                ("bad_banks", counters.bad_banks),
+            ],
+        )
+        .and_then(|mut line| {
+            write!(line, ",place={},loaded={loaded}", self.store_place)?;
+            Ok(line)
+        }));
+        if let Some(i2c) = self.i2c {
+            out(line(
+                "I2C",
+                &[
+                    ("transfers", i2c.transfers),
+                    ("refused", i2c.refused),
+                    ("failed", i2c.failed),
+                    ("recoveries", i2c.recoveries),
+                ],
+            ));
+        }
     }
 }
 

@@ -38,6 +38,19 @@ pub enum Trouble {
 }
 
 impl Trouble {
+    /// In a word, for counters and logs.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Trouble::Missing => "missing",
+            Trouble::Eeprom(EepromError::Silent) => "eeprom_silent",
+            Trouble::Eeprom(EepromError::Refused) => "eeprom_refuses",
+            Trouble::Eeprom(EepromError::Bus) => "i2c_held",
+            Trouble::Eeprom(EepromError::Misplaced) | Trouble::TooLong => "misplaced",
+            Trouble::Flash => "flash_refuses",
+            Trouble::Worn => "worn",
+        }
+    }
+
     /// What a user is told.
     pub const fn reason(self) -> &'static str {
         match self {
@@ -59,19 +72,6 @@ impl From<EepromError> for Trouble {
 impl From<Misplaced> for Trouble {
     fn from(_: Misplaced) -> Self {
         Trouble::Flash
-    }
-}
-
-impl<E> From<SaveError<E>> for Trouble
-where
-    Trouble: From<E>,
-{
-    fn from(cause: SaveError<E>) -> Self {
-        match cause {
-            SaveError::TooLong => Trouble::TooLong,
-            SaveError::Worn => Trouble::Worn,
-            SaveError::Medium(cause) => cause.into(),
-        }
     }
 }
 
@@ -198,6 +198,10 @@ where
     match turn {
         Turn::Again => None,
         Turn::Idle => Some(None),
-        Turn::Ended(result) => Some(Some(result.map_err(Trouble::from))),
+        Turn::Ended(result) => Some(Some(result.map_err(|cause| match cause {
+            SaveError::TooLong => Trouble::TooLong,
+            SaveError::Worn => Trouble::Worn,
+            SaveError::Medium(cause) => cause.into(),
+        }))),
     }
 }

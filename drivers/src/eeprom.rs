@@ -79,7 +79,11 @@ impl<B: I2c> Eeprom<B> {
             return Err(EepromError::Misplaced);
         }
         let select = [(at >> 8) as u8, at as u8];
-        match self.bus.write_read(self.address, &select, out).map_err(kind) {
+        match self
+            .bus
+            .write_read(self.address, &select, out)
+            .map_err(kind)
+        {
             Err(EepromError::Silent) => {
                 self.wait()?;
                 self.bus

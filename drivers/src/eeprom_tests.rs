@@ -52,13 +52,14 @@ impl I2c for Device {
                 NoAcknowledgeSource::Address,
             )));
         }
+        let place = |high: &u8, low: &u8| usize::from(*high) << 8 | usize::from(*low);
         match operations {
-            [Operation::Write(&[high, low]), Operation::Read(out)] => {
-                let at = usize::from(high) << 8 | usize::from(low);
+            [Operation::Write([high, low]), Operation::Read(out)] => {
+                let at = place(high, low);
                 out.copy_from_slice(&self.bytes[at..at + out.len()]);
             }
-            [Operation::Write(&[high, low, ref data @ ..])] => {
-                let at = usize::from(high) << 8 | usize::from(low);
+            [Operation::Write([high, low, data @ ..])] => {
+                let at = place(high, low);
                 self.bytes[at..at + data.len()].copy_from_slice(data);
                 self.busy_from = Some(now_us());
             }
@@ -143,8 +144,17 @@ fn nothing_leaves_the_memory_or_a_page() {
     let mut eeprom = eeprom();
     assert_eq!(eeprom.write(30, &[0; 3]), Err(EepromError::Misplaced));
     assert_eq!(eeprom.write(BYTES, &[0]), Err(EepromError::Misplaced));
-    assert_eq!(eeprom.write(usize::MAX, &[0; 2]), Err(EepromError::Misplaced));
-    assert_eq!(eeprom.read(BYTES - 1, &mut [0; 2]), Err(EepromError::Misplaced));
-    assert_eq!(eeprom.read(usize::MAX, &mut [0; 2]), Err(EepromError::Misplaced));
+    assert_eq!(
+        eeprom.write(usize::MAX, &[0; 2]),
+        Err(EepromError::Misplaced)
+    );
+    assert_eq!(
+        eeprom.read(BYTES - 1, &mut [0; 2]),
+        Err(EepromError::Misplaced)
+    );
+    assert_eq!(
+        eeprom.read(usize::MAX, &mut [0; 2]),
+        Err(EepromError::Misplaced)
+    );
     assert_eq!(eeprom.bus().questions, 0);
 }

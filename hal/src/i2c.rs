@@ -113,7 +113,10 @@ impl I2c1 {
         let r = &self.registers;
         r.ic_con().write(|w| {
             w.master_mode().enabled().speed().fast();
-            w.ic_restart_en().enabled().ic_slave_disable().slave_disabled();
+            w.ic_restart_en()
+                .enabled()
+                .ic_slave_disable()
+                .slave_disabled();
             w.rx_fifo_full_hld_ctrl().enabled()
         });
         // SAFETY: counts within the ranges of the datasheet, 4.3.14: HCNT at least 6, LCNT at least 8, SPKLEN at least 1, hold below LCNT - 2.
@@ -253,11 +256,7 @@ impl i2c::ErrorType for I2c1 {
 }
 
 impl i2c::I2c<SevenBitAddress> for I2c1 {
-    fn transaction(
-        &mut self,
-        address: u8,
-        operations: &mut [Operation<'_>],
-    ) -> Result<(), Error> {
+    fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), Error> {
         self.perform(address, operations)
     }
 }

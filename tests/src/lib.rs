@@ -9,6 +9,7 @@ pub mod power_cuts;
 pub mod processor_time;
 pub mod profile;
 pub mod reception;
+pub mod settings_store;
 
 use std::path::PathBuf;
 
