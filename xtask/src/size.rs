@@ -40,7 +40,9 @@ fn crate_of(symbol: &str) -> Option<&str> {
 
 fn layer_of(name: &str) -> &'static str {
     match name {
-        "mode_s" | "demod" | "tracker" | "report" | "reporter" | "settings" | "shell" | "store" => "services",
+        "mode_s" | "demod" | "tracker" | "report" | "reporter" | "settings" | "shell" | "store" => {
+            "services"
+        }
         "drivers" => "drivers",
         "hal" => "hal",
         "app" | "bootloader" => "image",
