@@ -1,0 +1,64 @@
+"""What libasterix (PyPI, strict: CAT021 edition 2.1, CAT023 edition 1.2) understands of a byte stream.
+
+Reads bytes from a file or standard input; prints one JSON line a record: {"category": 21, "131/LAT": 52.2, ...}. Keys are item and subitem of the
+specification; quantities are in the specification's units, tables and numbers as integers, text as text. Ends with exit code 1 where a byte fits no
+record.
+"""
+
+import json
+import sys
+
+from asterix.base import Bits, RawDatablock
+from asterix.generated import Cat_021_2_1, Cat_023_1_2
+
+EDITIONS = {21: Cat_021_2_1, 23: Cat_023_1_2}
+
+
+def element(variation):
+    content = variation.content if not callable(variation.content) else variation.content()
+    if hasattr(content, "as_quantity"):
+        return content.as_quantity()
+    if hasattr(content, "as_string"):
+        return content.as_string()
+    return content.as_uint()
+
+
+def flatten(name, variation, into):
+    kind = type(variation).__mro__[1].__name__
+    if kind == "Element":
+        into[name] = element(variation)
+    elif kind in ("Group", "Extended", "Compound"):
+        for sub in variation.cv_items_dict:
+            item = variation.get_item(sub)
+            if item is not None:
+                flatten(f"{name}/{sub}", item.variation, into)
+    elif kind == "Repetitive":
+        into[name] = [repetition.as_uint() for repetition in variation.get_list()]
+    else:
+        raise ValueError(f"{name}: a {kind}")
+
+
+def records(data):
+    blocks = RawDatablock.parse(Bits.from_bytes(data))
+    if isinstance(blocks, ValueError):
+        raise blocks
+    for block in blocks:
+        category = block.get_category()
+        parsed = EDITIONS[category].cv_uap.parse(block.get_raw_records())
+        if isinstance(parsed, ValueError):
+            raise parsed
+        for record in parsed:
+            told = {"category": category}
+            for name, item in record.items_regular.items():
+                flatten(name, item.variation, told)
+            yield told
+
+
+def main():
+    stream = open(sys.argv[1], "rb") if len(sys.argv) > 1 else sys.stdin.buffer
+    for told in records(stream.read()):
+        print(json.dumps(told))
+
+
+if __name__ == "__main__":
+    main()
