@@ -19,6 +19,7 @@
 //! Not modelled: jitter of the oscillator and of the PLL, the ring oscillator (it deviates as the crystal does), start-up time.
 
 use serde::{Deserialize, Serialize};
+
 /// True time for which the deviation is constant, picoseconds: 100 ms.
 const BLOCK_PS: i128 = 100_000_000_000;
 /// Blocks in an hour and in a day.

@@ -1,6 +1,7 @@
 //! Erase and program operations of the flash, counted, with what each one changes: what a power cut needs to know.
 
 use serde::{Deserialize, Serialize};
+
 /// What an operation does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Kind {

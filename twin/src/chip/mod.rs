@@ -24,12 +24,15 @@ pub mod pins;
 pub mod pio;
 mod power;
 mod profile;
+mod psm;
 mod pwm;
 mod qspi;
+mod resets;
 mod rom;
 mod sio;
 pub mod spi;
 mod syscfg;
+mod sysinfo;
 mod systick;
 mod time;
 mod timer;
@@ -38,6 +41,7 @@ pub mod uart;
 mod usb;
 pub mod usb_host;
 mod usb_strings;
+mod vreg;
 mod watchdog;
 
 use bus::debug::Hit;
@@ -53,8 +57,6 @@ const IDLE_SLICE: u64 = 1 << 20;
 /// boot2: the first 256 bytes of flash run from the top of SRAM (datasheet 2.8.1.3.1).
 const BOOT2: usize = 256;
 const BOOT2_AT: u32 = 0x2004_1f00;
-/// PSM bits a whole-chip watchdog reset selects: all but the two oscillators.
-const WHOLE_CHIP: u32 = 0x1_fffc;
 
 /// One core and how far it has run.
 #[derive(Clone, Serialize, Deserialize)]
@@ -442,10 +444,10 @@ impl Chip {
         }
         if let Some(cause) = self.bus.reset_request.take() {
             let by_watchdog = cause != ResetCause::Software;
-            if by_watchdog && self.bus.psm_wdsel & WHOLE_CHIP != WHOLE_CHIP {
+            if by_watchdog && !self.bus.psm.watchdog_resets_chip() {
                 self.bus
                     .fault
-                    .get_or_insert(Fault::PartialReset(self.bus.psm_wdsel));
+                    .get_or_insert(Fault::PartialReset(self.bus.psm.watchdog_resets()));
                 return;
             }
             self.reset(cause);

@@ -12,6 +12,7 @@
 //! pins and functions other than XIP are errors. GPIO_HI_IN reads SS high: nobody presses BOOTSEL.
 
 use serde::{Deserialize, Serialize};
+
 const PINS: usize = 6;
 const SS: usize = 1;
 const CTRL_WRITABLE: u32 = 0x3003_331f;

@@ -11,6 +11,7 @@
 //! | 18 | MEMPOWERDOWN | powering a memory down is an error: its contents would be gone |
 
 use serde::{Deserialize, Serialize};
+
 /// Interrupt lines a core has.
 const LINES: u32 = 0x03ff_ffff;
 /// Observed SWDIO high, driven lines high, both ports on the pads.

@@ -15,6 +15,7 @@
 //! Nothing is counted: the value follows from the cycle at which it was last set.
 
 use serde::{Deserialize, Serialize};
+
 const MASK: u32 = 0x00ff_ffff;
 const ENABLE: u32 = 1 << 0;
 const TICKINT: u32 = 1 << 1;

@@ -4,6 +4,7 @@
 //! comes. A tick that falls between two cycles is seen at the later one, as a synchroniser would show it, and no error adds up.
 
 use serde::{Deserialize, Serialize};
+
 /// When something happens: cycle of clk_sys, picoseconds of true time since power-on, and the rate of clk_sys.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Instant {

@@ -19,6 +19,7 @@
 //! A tick takes a whole number of system cycles; the bus tells how many when the clocks change.
 
 use serde::{Deserialize, Serialize};
+
 /// Microsecond timer.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Timer {

@@ -15,6 +15,7 @@
 //! bites again only once it is loaded (our reading). TICK.CYCLES is 0 until it is written; no tick comes of that here.
 
 use serde::{Deserialize, Serialize};
+
 /// Bits of CTRL that software can write without firing, and its reset value.
 const WATCHDOG_CTRL: u32 = 0x4700_0000;
 const CTRL_RESET: u32 = 0x0700_0000;

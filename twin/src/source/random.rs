@@ -1,6 +1,7 @@
 //! Random numbers of the model's own: the same on every host and in every version.
 
 use serde::{Deserialize, Serialize};
+
 /// SplitMix64 (Steele, Lea, Flood 2014).
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Random(u64);

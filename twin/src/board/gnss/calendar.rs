@@ -9,6 +9,7 @@
 //! Source: ITU-R TF.460 (leap seconds), IS-GPS-200 (week number).
 
 use serde::{Deserialize, Serialize};
+
 /// Days that a week rollover steps back: 1024 weeks.
 const ROLLOVER_DAYS: i64 = 7 * 1024;
 const DAY_S: i64 = 86_400;

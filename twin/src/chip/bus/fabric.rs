@@ -24,6 +24,7 @@
 //! Assumed: a contest costs the loser one cycle.
 
 use serde::{Deserialize, Serialize};
+
 /// Ports of the crossbar.
 pub const PORTS: usize = 10;
 pub const XIP_PORT: usize = 6;

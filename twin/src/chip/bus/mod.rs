@@ -47,8 +47,10 @@ use super::i2c::I2c;
 use super::outside::Surroundings;
 use super::pins::Pins;
 use super::pio::Pio;
+use super::psm::Psm;
 use super::pwm::Pwm;
 use super::qspi::Qspi;
+use super::resets::Resets;
 use super::sio::Sio;
 use super::spi::Spi;
 use super::syscfg::Syscfg;
@@ -163,11 +165,8 @@ pub struct Bus {
     pub pwm: Pwm,
     pub usb: Usb,
     pub usb_host: UsbHost,
-    resets: u32,
-    resets_wdsel: u32,
-    psm_off: u32,
-    pub psm_wdsel: u32,
-    chip_reset: u32,
+    resets: Resets,
+    pub psm: Psm,
     sys_hz: u64,
     /// Picoseconds at cycle `since`, when the system clock last changed.
     time_ps: u128,
@@ -239,11 +238,8 @@ impl Bus {
             pwm: Pwm::default(),
             usb: Usb::default(),
             usb_host: UsbHost::default(),
-            resets: reset::ALL & !reset::BY_ROM,
-            resets_wdsel: 0,
-            psm_off: 0,
-            psm_wdsel: 0,
-            chip_reset: 1 << 8,
+            resets: Resets::new(reset::BY_ROM),
+            psm: Psm::default(),
             sys_hz: 0,
             time_ps: 0,
             since: 0,
@@ -258,17 +254,16 @@ impl Bus {
 
     /// Everything back to its reset state but what survives: memories, scratch words, what is attached outside.
     pub fn reset(&mut self, cause: ResetCause) {
-        // Bits 0 and 1 of the watchdog's selection are the oscillators.
         let oscillators = match cause {
             ResetCause::PowerOn => true,
             ResetCause::Software => false,
-            ResetCause::WatchdogTimer | ResetCause::WatchdogForced => self.psm_wdsel & 3 == 3,
+            ResetCause::WatchdogTimer | ResetCause::WatchdogForced => {
+                self.psm.watchdog_stops_oscillators()
+            }
         };
         self.apply_resets(reset::ALL);
-        self.resets = reset::ALL & !reset::BY_ROM;
-        self.resets_wdsel = 0;
-        self.psm_off = 0;
-        self.psm_wdsel = 0;
+        self.resets = Resets::new(reset::BY_ROM);
+        self.psm = Psm::default();
         self.flash.reset();
         self.xip.reset();
         self.fabric.priority = 0;
@@ -277,7 +272,6 @@ impl Bus {
         match cause {
             ResetCause::PowerOn => {
                 self.watchdog = Watchdog::default();
-                self.chip_reset = 1 << 8;
                 self.sram.fill(0);
             }
             ResetCause::Software => self.watchdog.reason = 0,

@@ -17,7 +17,7 @@ impl Bus {
 
     /// Stops the chip if the block of `address` is held in reset.
     fn held_in_reset(&mut self, access: &'static str, address: u32) -> bool {
-        let held = self.resets & blocks::block(address).reset != 0;
+        let held = self.resets.holds(blocks::block(address).reset);
         if held {
             self.fault.get_or_insert(Fault::HeldInReset {
                 access,

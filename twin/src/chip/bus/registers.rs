@@ -6,6 +6,7 @@ use crate::chip::pio::Pio;
 use crate::chip::sio::Effect;
 use crate::chip::syscfg::Syscfg;
 use crate::chip::usb::Usb;
+use crate::chip::{sysinfo, vreg};
 
 impl Bus {
     /// Blocks whose reset line rises.
@@ -95,27 +96,11 @@ impl Bus {
             }
             0xe => self.read_ppb(address),
             _ => match base {
-                // Chip id: RP2040 B2, manufacturer 0x927.
-                0x4000_0000 => match offset {
-                    0x00 => Some(0x2000_2927),
-                    0x04 => Some(2),
-                    _ => None,
-                },
+                0x4000_0000 => sysinfo::read(offset),
                 0x4000_4000 => self.syscfg.read(offset),
                 0x4000_8000 => self.clocks.read_clocks(offset),
-                0x4000_c000 => match offset {
-                    0 => Some(self.resets),
-                    4 => Some(self.resets_wdsel),
-                    8 => Some(!self.resets & reset::ALL),
-                    _ => None,
-                },
-                0x4001_0000 => match offset {
-                    0x0 => Some(0),
-                    0x4 => Some(self.psm_off),
-                    0x8 => Some(self.psm_wdsel),
-                    0xc => Some(0x1_ffff & !self.psm_off),
-                    _ => None,
-                },
+                0x4000_c000 => self.resets.read(offset),
+                0x4001_0000 => self.psm.read(offset),
                 0x4001_4000 => {
                     self.look_at_pins();
                     self.pins.read_io(offset)
@@ -151,12 +136,7 @@ impl Bus {
                 0x4005_4000 => self.timer.read(offset, now),
                 0x4005_8000 => self.watchdog.read(offset, now),
                 0x4006_0000 => self.clocks.read_rosc(offset),
-                0x4006_4000 => match offset {
-                    0x0 => Some(0xb1 | 1 << 12),
-                    0x4 => Some(0x91),
-                    0x8 => Some(self.chip_reset),
-                    _ => None,
-                },
+                0x4006_4000 => vreg::read(offset),
                 0x5000_0000 => self.dma.read(offset),
                 0x5010_0000 => Some(self.usb.word(offset as usize)),
                 0x5011_0000 => self.usb.read(offset),
@@ -200,26 +180,13 @@ impl Bus {
                 self.clocks_changed();
                 return ok;
             }
-            0x4000_c000 => match offset {
-                0 => {
-                    let newly = value & !self.resets;
-                    self.resets = value & reset::ALL;
-                    self.apply_resets(newly);
-                }
-                4 => self.resets_wdsel = value,
-                8 => {}
-                _ => return false,
+            0x4000_c000 => match self.resets.write(offset, value) {
+                Some(newly) => self.apply_resets(newly),
+                None => return false,
             },
-            0x4001_0000 => match offset {
-                0x0 | 0xc => {}
-                0x4 => {
-                    if value & (1 << 16) != 0 {
-                        self.core1_forced_off = true;
-                    }
-                    self.psm_off = value & 0x1_ffff;
-                }
-                0x8 => self.psm_wdsel = value & 0x1_ffff,
-                _ => return false,
+            0x4001_0000 => match self.psm.write(offset, value) {
+                Some(stops_core1) => self.core1_forced_off |= stops_core1,
+                None => return false,
             },
             0x4001_4000 => {
                 let ok = self.pins.write_io(offset, value);

@@ -13,6 +13,7 @@
 //! result is exact to the step's resolution: 2048 kHz at INTERVAL 0, half of it with each further one.
 
 use serde::{Deserialize, Serialize};
+
 /// Nanoseconds of the shortest interval.
 const INTERVAL_NS: u64 = 980;
 /// Resolution at INTERVAL 0, in 32nds of a kHz.

@@ -13,6 +13,7 @@
 //! becomes stable. A write to FREQA, FREQB, DIV or PHASE of the ring, which would change its frequency, and DORMANT of both are errors.
 
 use serde::{Deserialize, Serialize};
+
 /// Crystal of every board (REFERENCE: 12 MHz).
 pub const XOSC_HZ: u64 = 12_000_000;
 /// Nominal ring oscillator (datasheet 2.17: about 6.5 MHz).

@@ -13,6 +13,7 @@
 //! VCO (750 to 1600 MHz) are in range; out of range it never does.
 
 use serde::{Deserialize, Serialize};
+
 /// Time to lock, in reference periods (assumed: the datasheet gives none; 42 µs at 12 MHz).
 const LOCK_REFERENCES: u64 = 500;
 const LEAST_REFERENCE_HZ: u64 = 5_000_000;

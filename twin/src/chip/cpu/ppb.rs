@@ -1,6 +1,7 @@
 //! What the core itself keeps of the system control block and the NVIC (ARMv6-M B3.2, B3.4); `bus/ppb.rs` gives it addresses.
 
 use serde::{Deserialize, Serialize};
+
 /// Bits of ICSR that wait for their exception.
 pub const NMI_PENDING: u32 = 1 << 31;
 pub const PENDSV_PENDING: u32 = 1 << 28;

@@ -1,6 +1,7 @@
 //! Core registers and flags (ARMv6-M B1.4).
 
 use serde::{Deserialize, Serialize};
+
 /// Registers of one core. `r[13]` is the stack pointer in use; `msp` and `psp` hold the one that is not, and both at a switch.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Registers {

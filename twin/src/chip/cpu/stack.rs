@@ -4,6 +4,7 @@
 //! low is reached, so watching costs next to nothing.
 
 use serde::{Deserialize, Serialize};
+
 /// One core's stack.
 #[derive(Clone, Default, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StackWatch {

@@ -7,6 +7,7 @@
 //! as on the chip.
 
 use serde::{Deserialize, Serialize};
+
 /// TREQ_SEL of an unpaced channel.
 pub const PERMANENT: u32 = 0x3f;
 /// TREQ_SEL of the first pacing timer.

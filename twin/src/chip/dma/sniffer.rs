@@ -12,6 +12,7 @@
 //! | 10 11 | OUT_REV, OUT_INV: of what SNIFF_DATA reads | | |
 
 use serde::{Deserialize, Serialize};
+
 const CRC32: u32 = 0x04c1_1db7;
 const CRC16: u32 = 0x1021;
 

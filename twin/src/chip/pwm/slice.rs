@@ -9,6 +9,7 @@
 //! delta-sigma: count k comes at the first cycle not before k (INT + FRAC / 16).
 
 use serde::{Deserialize, Serialize};
+
 /// CSR bits.
 const ENABLE: u32 = 1 << 0;
 const PHASE_CORRECT: u32 = 1 << 1;

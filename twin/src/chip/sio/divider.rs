@@ -6,6 +6,7 @@
 //! before READY is nothing a program can use, so reading them then is an error.
 
 use serde::{Deserialize, Serialize};
+
 /// Cycles a division takes.
 const CYCLES: u64 = 8;
 const READY: u32 = 1 << 0;

@@ -17,6 +17,7 @@
 //! ```
 
 use serde::{Deserialize, Serialize};
+
 const WRITABLE: u32 = 0x001f_ffff;
 const BLEND: u32 = 1 << 21;
 const CLAMP: u32 = 1 << 22;
