@@ -1,14 +1,16 @@
-//! `squitter`: run the twin, replay recordings, decode frames, simulate air.
+//! `squitter`: run the twin, replay recordings, decode frames, simulate air; sign, check and install firmware.
 //!
-//! Exit codes: 0 done; 1 something went wrong, told on standard error; 2 the command line is wrong.
+//! Exit codes: 0 done; 1 something went wrong, told on standard error; 2 the command line is wrong; `update` has more of its own.
 #![forbid(unsafe_code)]
 
 mod beast;
 mod decode;
 mod device;
+mod factory;
 mod hardware;
 mod instruments;
 mod json;
+mod keys;
 mod live;
 mod output;
 mod ports;
@@ -19,6 +21,7 @@ mod replay;
 mod scene;
 mod serial;
 mod snapshots;
+mod update;
 
 use std::process::ExitCode;
 
@@ -44,6 +47,11 @@ pub enum Failure {
     Usage(String),
     #[error("{path}: {cause}")]
     File { path: String, cause: std::io::Error },
+    /// A key, an image or a package that is not what it should be.
+    #[error("{0}")]
+    Release(String),
+    #[error(transparent)]
+    Update(#[from] update::Failed),
     #[error("the device answered `{command}` with: {answer}")]
     Refused { command: String, answer: String },
     #[error("{refused} of {lines} lines were not frames; the first: line {first}: {reason}")]
@@ -53,6 +61,12 @@ pub enum Failure {
         first: u64,
         reason: String,
     },
+}
+
+impl From<String> for Failure {
+    fn from(reason: String) -> Self {
+        Failure::Release(reason)
+    }
 }
 
 fn command() -> Command {
@@ -67,6 +81,12 @@ fn command() -> Command {
         .subcommand(live::command())
         .subcommand(decode::command())
         .subcommand(scene::command())
+        .subcommand(update::command())
+        .subcommand(keys::keygen())
+        .subcommand(keys::pack())
+        .subcommand(keys::sign())
+        .subcommand(keys::verify())
+        .subcommand(factory::command())
 }
 
 fn main() -> ExitCode {
@@ -76,6 +96,12 @@ fn main() -> ExitCode {
         Some(("twin", m)) => live::run(m),
         Some(("decode", m)) => decode::run(m),
         Some(("scene", m)) => scene::run(m),
+        Some(("update", m)) => update::run(m),
+        Some(("keygen", m)) => keys::run_keygen(m),
+        Some(("pack", m)) => keys::run_pack(m),
+        Some(("sign", m)) => keys::run_sign(m),
+        Some(("verify", m)) => keys::run_verify(m),
+        Some(("factory", m)) => factory::run(m),
         _ => Ok(()),
     };
     match done {
@@ -84,7 +110,10 @@ fn main() -> ExitCode {
         Err(Failure::Output(e)) if e.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("squitter: {failure}");
-            ExitCode::FAILURE
+            match failure {
+                Failure::Update(failed) => failed.code(),
+                _ => ExitCode::FAILURE,
+            }
         }
     }
 }

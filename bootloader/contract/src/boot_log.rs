@@ -176,6 +176,8 @@ pub struct LogState {
     pub slots: [Option<(ImageId, Standing)>; 2],
     /// The slot confirmed last.
     pub confirmed_last: Option<SlotName>,
+    /// The slot that got an image last: of two unconfirmed ones it is tried first.
+    pub installed_last: Option<SlotName>,
     /// Images with a lower security counter are refused.
     pub floor: u32,
 }
@@ -189,7 +191,10 @@ impl LogState {
                 self.floor = self.floor.max(counter);
                 return;
             }
-            Record::Pending { slot, image } => (slot, image, Standing::Pending),
+            Record::Pending { slot, image } => {
+                self.installed_last = Some(slot);
+                (slot, image, Standing::Pending)
+            }
             Record::Trial { slot, image, tries } => (slot, image, Standing::Trial(tries)),
             Record::Confirmed {
                 slot,
@@ -221,22 +226,44 @@ impl LogState {
 
     /// The records that say the same from nothing, oldest first, without the generation: what a new sector begins with.
     pub fn snapshot(&self) -> impl Iterator<Item = Record> {
-        // The slot confirmed last comes last, so that reading the records back finds the same order.
-        let last = self.confirmed_last.unwrap_or(SlotName::B);
-        let slots = [last.other(), last].map(|slot| {
-            self.slots[slot.index()].map(|(image, standing)| match standing {
-                Standing::Pending => Record::Pending { slot, image },
-                Standing::Trial(tries) => Record::Trial { slot, image, tries },
+        // The slot confirmed or installed last comes last, so that reading the records back finds the same order.
+        let is_open = |slot: SlotName| {
+            let standing = self.slots[slot.index()].map(|(_, standing)| standing);
+            matches!(standing, Some(Standing::Pending | Standing::Trial(_)))
+        };
+        let last = if SlotName::ALL.into_iter().all(is_open) {
+            self.installed_last
+        } else {
+            self.confirmed_last
+        };
+        let last = last.unwrap_or(SlotName::B);
+        let slots = [last.other(), last].into_iter().flat_map(|slot| {
+            let Some((image, standing)) = self.slots[slot.index()] else {
+                return [None, None];
+            };
+            let pending = Record::Pending { slot, image };
+            match standing {
+                Standing::Pending => [Some(pending), None],
+                Standing::Trial(tries) => {
+                    let trial = Record::Trial { slot, image, tries };
+                    // A trial alone does not say that it was installed last.
+                    let installed = self.installed_last == Some(slot);
+                    [installed.then_some(pending), Some(trial)]
+                }
                 // The floor has a record of its own.
-                Standing::Confirmed => Record::Confirmed {
-                    slot,
-                    image,
-                    counter: 0,
-                },
-                Standing::Rejected => Record::Rejected { slot, image },
-            })
+                Standing::Confirmed => {
+                    let counter = 0;
+                    let confirmed = Record::Confirmed {
+                        slot,
+                        image,
+                        counter,
+                    };
+                    [Some(confirmed), None]
+                }
+                Standing::Rejected => [Some(Record::Rejected { slot, image }), None],
+            }
         });
-        core::iter::once(Record::Floor(self.floor)).chain(slots.into_iter().flatten())
+        core::iter::once(Record::Floor(self.floor)).chain(slots.flatten())
     }
 }
 
@@ -355,6 +382,13 @@ mod tests {
             let both = SlotName::ALL
                 .iter()
                 .all(|slot| log.slots[slot.index()].is_some_and(|(_, s)| s == Standing::Confirmed));
+            let open = |slot: &SlotName| {
+                let standing = log.slots[slot.index()].map(|(_, standing)| standing);
+                matches!(standing, Some(Standing::Pending | Standing::Trial(_)))
+            };
+            if SlotName::ALL.iter().all(open) {
+                assert_eq!(again.installed_last, log.installed_last, "{log:?}");
+            }
             if both && log.confirmed_last.is_some() {
                 assert_eq!(again.confirmed_last, log.confirmed_last, "{log:?}");
             }

@@ -3,7 +3,7 @@
 //! | first that holds | what happens |
 //! |---|---|
 //! | an image on trial has used up its tries | it is logged as rejected, and the question is asked again |
-//! | an image is pending, or on trial with tries left | it runs; the try is logged before, unless the power came back in the middle of one |
+//! | an image is pending, or on trial with tries left; of two, the one installed last | it runs; the try is logged before, unless the power came back in the middle of one |
 //! | a confirmed image | it runs; of two, the one confirmed last |
 //! | an image the log does not know (flashed by hand) | it runs on trial, if no other has been confirmed |
 //! | else | nothing runs; the bootloader stays and says why |
@@ -39,7 +39,8 @@ pub fn choose(log: &LogState, verified: &Verified, after_power_on: bool) -> Step
         let image = header.image_id();
         Some((image, log.standing(slot, image)))
     };
-    for slot in SlotName::ALL {
+    let newest = log.installed_last.unwrap_or(SlotName::A);
+    for slot in [newest, newest.other()] {
         let Some((image, Some(standing))) = standing(slot) else {
             continue;
         };

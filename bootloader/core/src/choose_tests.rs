@@ -29,6 +29,7 @@ fn log(a: Option<Standing>, b: Option<Standing>, last: Option<SlotName>) -> LogS
     LogState {
         slots: [of(A, a), of(B, b)],
         confirmed_last: last,
+        installed_last: None,
         floor: 0,
     }
 }
@@ -80,6 +81,24 @@ fn a_pending_image_is_tried_three_times_then_rejected() {
         runs(choose(&after, &verified(GOOD), false)),
         Some((A, None))
     );
+}
+
+/// An update sent to a device whose own image has not confirmed itself yet: the new one is tried first, whichever slot it is in.
+#[test]
+fn of_two_unconfirmed_images_the_one_installed_last_is_tried_first() {
+    for newest in SlotName::ALL {
+        for (standing, tries) in [(Pending, 1), (Trial(1), 2)] {
+            let mut log = log(Some(Trial(1)), Some(Trial(1)), None);
+            log.slots[newest.index()] = Some((header(newest).image_id(), standing));
+            log.installed_last = Some(newest);
+            let next = choose(&log, &verified(GOOD), false);
+            assert_eq!(runs(next), Some((newest, Some(tries))));
+            // Once it is rejected, the other goes on with its own tries.
+            log.slots[newest.index()] = Some((header(newest).image_id(), Rejected));
+            let next = choose(&log, &verified(GOOD), false);
+            assert_eq!(runs(next), Some((newest.other(), Some(2))));
+        }
+    }
 }
 
 #[test]

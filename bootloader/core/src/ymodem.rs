@@ -18,12 +18,13 @@
 //! two CAN, [`MOST_ERRORS`] bad blocks in a row or a silence end the transfer. The caller answers `Begin`, `Data` and `End` with
 //! [`Receiver::accept`] or [`Receiver::cancel`], after it has done what takes time: the sender waits for that.
 
-const SOH: u8 = 0x01;
-const STX: u8 = 0x02;
-const EOT: u8 = 0x04;
-const ACK: u8 = 0x06;
-const NAK: u8 = 0x15;
-const CAN: u8 = 0x18;
+/// The bytes of the protocol: block of 128, block of 1024, end, yes, no, give up.
+pub const SOH: u8 = 0x01;
+pub const STX: u8 = 0x02;
+pub const EOT: u8 = 0x04;
+pub const ACK: u8 = 0x06;
+pub const NAK: u8 = 0x15;
+pub const CAN: u8 = 0x18;
 
 /// Data bytes of the longest block.
 pub const MOST_DATA: usize = 1024;
@@ -43,6 +44,11 @@ pub const MOST_ERRORS: u8 = 10;
 
 /// XMODEM's CRC.
 const CRC: crc::Crc<u16, crc::NoTable> = crc::Crc::<u16, crc::NoTable>::new(&crc::CRC_16_XMODEM);
+
+/// The CRC of a block's data.
+pub fn crc16(data: &[u8]) -> u16 {
+    CRC.checksum(data)
+}
 
 /// Why a transfer ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
