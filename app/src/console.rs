@@ -1,189 +1,242 @@
-//! CONSOLE's commands, carried out: the ADSBee dialect of RUN, as far as it is built (`shell` parses it).
+//! What is typed on both ports, and where its replies go.
 //!
-//! A reply is one or more whole lines with `\r\n`; like every message it is dropped and counted when the port has no room.
+//! ```text
+//!   USB packet of 64 B ─┐
+//!                       ├─▶ lines ─▶ shell::answer ─▶ reply lines, each one message of its port
+//!   UART ring ──────────┘              └─▶ a list: a few lines a turn, while the port has room
+//! ```
+//! Lines are answered in order, one at a time: while a list is told, a state is changed or the port is full, what was typed behind waits, and with
+//! it the host (USB) or the ring (UART). A reply line is dropped and counted when the port has no room, like every message.
 
-use crate::outlets;
-use crate::receiver::{Receiver, UsbDrive};
-use boot_contract::hand_over::{Cause, HandOver};
+use crate::receiver::Receiver;
 use core::fmt::{self, Write};
 use hal::usb::PACKET;
-use reporter::{Kind, Outlet, Port, Reporter};
-use shell::{BaudRateReply, LineReader, OK, ProtocolReply, Refusal, Request, Uart, help_lines};
+use reporter::{Kind, Outlet, Port};
+use settings::Port as Name;
+use shell::{After, Dialect, LineReader, Listing, Out, answer};
 
-/// Bytes of the longest reply line and its end.
-const MAX_REPLY: usize = crate::stats::MAX_LINE + 2;
+/// Bytes of the longest reply to one line, its lines together: the counters of `AT+STATS?`.
+const MAX_REPLY: usize = 6 * 1024;
+/// A list goes on when so many bytes have room.
+const LIST_ROOM: usize = 1024;
+/// A line is answered when so many bytes have room: the counters of a long run.
+const LINE_ROOM: usize = 4608;
+/// Bytes taken from one port a turn of the loop.
+const BYTES_A_TURN: usize = 256;
 
-/// Lines that one packet can end: the shortest line is one byte and its end. All are answered before the next packet is taken.
-const LINES_A_PACKET: usize = PACKET / 2;
-
-/// CONSOLE's input.
-pub struct Console {
+/// Input of one port.
+pub struct Input {
     reader: LineReader,
-    waiting: heapless::Deque<Result<Request, Refusal>, LINES_A_PACKET>,
+    listing: Option<Listing>,
 }
 
-impl Console {
+impl Input {
     /// At the start of a line.
     pub const fn new() -> Self {
         Self {
             reader: LineReader::new(),
-            waiting: heapless::Deque::new(),
+            listing: None,
         }
-    }
-
-    /// Takes what has arrived and moves what waits to be sent. Returns whether anything moved, and the commands that found no
-    /// place (none, as long as each turn answers them all).
-    pub fn poll(&mut self, port: &mut Reporter<outlets::Console>) -> (bool, u32) {
-        let mut lost = 0;
-        let (mut bytes, mut count) = ([0; PACKET], 0);
-        let moved = port.port.outlet.0.poll(|byte| {
-            bytes[count] = byte;
-            count += 1;
-        });
-        for &byte in &bytes[..count] {
-            if let Some(byte) = port.heard(byte)
-                && let Some(command) = self.reader.feed(byte)
-                && self.waiting.push_back(command).is_err()
-            {
-                lost += 1;
-            }
-        }
-        (moved, lost)
-    }
-
-    /// The next command to answer.
-    pub fn next(&mut self) -> Option<Result<Request, Refusal>> {
-        self.waiting.pop_front()
     }
 }
 
-/// Carries out one command and replies on CONSOLE.
-pub fn answer(command: Result<Request, Refusal>, receiver: &mut Receiver) {
-    let request = match command {
-        Ok(request) => request,
-        Err(refusal) => return reply(&mut receiver.console.port, format_args!("{refusal}")),
+/// Input of both, and the USB packet under way.
+pub struct Inputs {
+    console: Input,
+    comms: Input,
+    packet: [u8; PACKET],
+    taken: usize,
+    length: usize,
+    console_was_open: bool,
+    /// Who asked for the save under way.
+    saving: Option<(Name, Dialect)>,
+}
+
+impl Inputs {
+    /// Nothing typed.
+    pub const fn new() -> Self {
+        Self {
+            console: Input::new(),
+            comms: Input::new(),
+            packet: [0; PACKET],
+            taken: 0,
+            length: 0,
+            console_was_open: false,
+            saving: None,
+        }
+    }
+
+    /// Serves both ports. Returns whether anything moved.
+    pub fn serve(&mut self, receiver: &mut Receiver) -> bool {
+        let saved = self.serve_saving(receiver);
+        saved | self.serve_usb(receiver) | self.serve_uart(receiver)
+    }
+
+    /// A turn of the save under way, which takes up to 2 ms.
+    fn serve_saving(&mut self, receiver: &mut Receiver) -> bool {
+        let Some((port, dialect)) = self.saving else {
+            return false;
+        };
+        if let Some(ended) = receiver.saving_turn() {
+            self.saving = None;
+            let mut reply = Reply::new();
+            dialect.tell(&mut reply, ended);
+            reply.send(receiver, port);
+        }
+        true
+    }
+
+    fn serve_usb(&mut self, receiver: &mut Receiver) -> bool {
+        let usb = &mut receiver.console.port.outlet.0;
+        let mut moved = if self.taken < self.length {
+            usb.poll_sending()
+        } else {
+            (self.taken, self.length) = (0, 0);
+            let (packet, length) = (&mut self.packet, &mut self.length);
+            usb.poll(|byte| {
+                packet[*length] = byte;
+                *length += 1;
+            })
+        };
+        let is_open = usb.is_open();
+        if is_open && !self.console_was_open {
+            self.console = Input::new();
+            receiver.greet_console();
+        }
+        self.console_was_open = is_open;
+        while self.saving.is_none() && can_go_on(&self.console, receiver, Name::Console) {
+            if go_on(&mut self.console, receiver, Name::Console) {
+                moved = true;
+                continue;
+            }
+            if self.taken == self.length {
+                break;
+            }
+            self.taken += 1;
+            let byte = self.packet[self.taken - 1];
+            let saving = take(&mut self.console, receiver, Name::Console, byte);
+            self.saving = saving.map(|dialect| (Name::Console, dialect));
+            moved = true;
+        }
+        moved
+    }
+
+    fn serve_uart(&mut self, receiver: &mut Receiver) -> bool {
+        receiver.comms.port.outlet.0.serve();
+        let mut moved = false;
+        for _ in 0..BYTES_A_TURN {
+            if self.saving.is_some() || !can_go_on(&self.comms, receiver, Name::CommsUart) {
+                break;
+            }
+            if go_on(&mut self.comms, receiver, Name::CommsUart) {
+                moved = true;
+                continue;
+            }
+            let Some(byte) = receiver.comms.port.outlet.0.receive() else {
+                break;
+            };
+            receiver.comms_received = receiver.comms_received.wrapping_add(1);
+            let saving = take(&mut self.comms, receiver, Name::CommsUart, byte);
+            self.saving = saving.map(|dialect| (Name::CommsUart, dialect));
+            moved = true;
+        }
+        moved
+    }
+}
+
+/// Whether the next line may be answered now.
+fn can_go_on(input: &Input, receiver: &Receiver, port: Name) -> bool {
+    if receiver.states.is_moving() {
+        return false;
+    }
+    // COMMS_UART in RUN answers next to nothing, and its ring is the reports'.
+    let is_silent = port == Name::CommsUart && receiver.states.is_run() && input.listing.is_none();
+    let free = match port {
+        Name::Console => receiver.console.port.room(Kind::Reply),
+        Name::CommsUart => receiver.comms.port.room(Kind::Reply),
     };
-    match request {
-        Request::Help => {
-            for (name, help) in help_lines() {
-                reply(&mut receiver.console.port, format_args!("{name}:{help}"));
-            }
-            reply(&mut receiver.console.port, format_args!("{OK}"));
-        }
-        Request::QueryStatistics => receiver.tell_statistics(|port, line| match line {
-            Ok(line) => reply(port, format_args!("{line}")),
-            Err(fmt::Error) => port.dropped_unmade(Kind::Reply, 1),
-        }),
-        Request::QueryProtocol => {
-            let text = ProtocolReply {
-                console: shown(receiver.settings.console.protocol()),
-                comms_uart: shown(receiver.settings.comms_uart.protocol()),
-            };
-            reply(&mut receiver.console.port, format_args!("{text}"));
-        }
-        Request::SetProtocol { port, protocol } => {
-            if let (Some(port), Some(protocol)) = (port, protocol) {
-                let port = match port {
-                    shell::Port::Console => &mut receiver.settings.console,
-                    shell::Port::CommsUart => &mut receiver.settings.comms_uart,
-                };
-                port.set_protocol(meant(protocol));
-                receiver.apply();
-            }
-            reply(&mut receiver.console.port, format_args!("{OK}"));
-        }
-        Request::QueryBaudRate => {
-            // GNSS_UART is not driven yet: rate 0.
-            let text = BaudRateReply {
-                comms_uart: receiver.comms.port.outlet.0.baud(),
-                gnss_uart: 0,
-            };
-            reply(&mut receiver.console.port, format_args!("{text}"));
-        }
-        Request::SetBaudRate {
-            uart: Some(Uart::Comms),
-            baud: Some(baud),
-        } => {
-            let done = receiver.comms.port.outlet.0.request_baud(baud).is_some();
-            let text = if done {
-                OK
+    is_silent
+        || free
+            >= if input.listing.is_some() {
+                LIST_ROOM
             } else {
-                "ERROR baud rate out of range"
-            };
-            reply(&mut receiver.console.port, format_args!("{text}"));
+                LINE_ROOM
+            }
+}
+
+/// Goes on with a list.
+fn go_on(input: &mut Input, receiver: &mut Receiver, port: Name) -> bool {
+    let Some(mut listing) = input.listing.take() else {
+        return false;
+    };
+    let place = receiver.place(port);
+    let mut reply = Reply::new();
+    if listing.turn(receiver, place, &mut reply) {
+        input.listing = Some(listing);
+    }
+    reply.send(receiver, port);
+    true
+}
+
+/// Takes a byte, and answers the line it ends; in which dialect when a save it began must be over first.
+fn take(input: &mut Input, receiver: &mut Receiver, port: Name, byte: u8) -> Option<Dialect> {
+    let text = match port {
+        Name::Console => receiver.console.heard(byte),
+        Name::CommsUart => receiver.comms.heard(byte),
+    };
+    let line = text.and_then(|byte| input.reader.feed(byte))?;
+    receiver.commands = receiver.commands.wrapping_add(1);
+    let place = receiver.place(port);
+    let mut reply = Reply::new();
+    let after = answer(line, place, receiver, &mut reply);
+    reply.send(receiver, port);
+    match after {
+        After::Done => {}
+        After::List(listing) => input.listing = Some(listing),
+        After::Event(event, dialect) => receiver.take_event(event, Some((port, dialect))),
+        After::Saving(dialect) => return Some(dialect),
+    }
+    None
+}
+
+/// Reply lines on their way to a port.
+pub struct Reply {
+    text: heapless::String<MAX_REPLY>,
+    /// Lines that found no room in it.
+    lost: u32,
+}
+
+impl Reply {
+    /// No line.
+    pub const fn new() -> Self {
+        Self {
+            text: heapless::String::new(),
+            lost: 0,
         }
-        Request::SetBaudRate {
-            uart: Some(Uart::Gnss),
-            baud: Some(_),
-        } => {
-            reply(
-                &mut receiver.console.port,
-                format_args!("ERROR GNSS_UART is not built yet"),
-            );
+    }
+
+    /// Sends each line as a message.
+    pub fn send(&self, receiver: &mut Receiver, port: Name) {
+        match port {
+            Name::Console => self.send_to(&mut receiver.console.port),
+            Name::CommsUart => self.send_to(&mut receiver.comms.port),
         }
-        Request::SetBaudRate { .. } => reply(&mut receiver.console.port, format_args!("{OK}")),
-        Request::Reboot => {
-            reply(&mut receiver.console.port, format_args!("{OK}"));
-            receiver.reboot_soon(HandOver::Restart(Cause::Command));
+    }
+
+    fn send_to<O: Outlet>(&self, port: &mut Port<O>) {
+        for line in self.text.split_inclusive('\n') {
+            port.message(Kind::Reply, line.as_bytes());
         }
-        Request::RebootBootloader => {
-            reply(&mut receiver.console.port, format_args!("{OK}"));
-            receiver.reboot_soon(HandOver::Stay(Cause::Command));
-        }
-        Request::Info => crate::info::tell(receiver),
-        Request::BootUsbUf2 if receiver.usb_drive == UsbDrive::Enabled => {
-            reply(&mut receiver.console.port, format_args!("{OK}"));
-            receiver.usb_drive_soon();
-        }
-        Request::BootUsbUf2 => reply(
-            &mut receiver.console.port,
-            format_args!("ERROR not enabled, AT+BOOT_USB_UF2=1 does that"),
-        ),
-        Request::QueryBootUsbUf2 => {
-            let enabled = u8::from(receiver.usb_drive == UsbDrive::Enabled);
-            reply(
-                &mut receiver.console.port,
-                format_args!("+BOOT_USB_UF2={enabled}"),
-            );
-        }
-        Request::EnableBootUsbUf2(enable) => {
-            receiver.usb_drive = if enable {
-                UsbDrive::Enabled
-            } else {
-                UsbDrive::Disabled
-            };
-            reply(&mut receiver.console.port, format_args!("{OK}"));
-        }
+        port.dropped_unmade(Kind::Reply, self.lost);
     }
 }
 
-/// A protocol as the commands name it.
-fn meant(protocol: shell::Protocol) -> settings::choices::Protocol {
-    use settings::choices::Protocol;
-    match protocol {
-        shell::Protocol::None => Protocol::None,
-        shell::Protocol::Raw => Protocol::Raw,
-        shell::Protocol::Beast => Protocol::Beast,
-        shell::Protocol::Csbee => Protocol::Csbee,
-    }
-}
-
-/// The other way round.
-fn shown(protocol: settings::choices::Protocol) -> shell::Protocol {
-    use settings::choices::Protocol;
-    match protocol {
-        Protocol::Raw => shell::Protocol::Raw,
-        Protocol::Beast => shell::Protocol::Beast,
-        Protocol::Csbee => shell::Protocol::Csbee,
-        _ => shell::Protocol::None,
-    }
-}
-
-/// One reply line.
-pub fn reply<O: Outlet>(port: &mut Port<O>, text: fmt::Arguments<'_>) {
-    let mut line = heapless::String::<MAX_REPLY>::new();
-    match write!(line, "{text}\r\n") {
-        Ok(()) => port.message(Kind::Reply, line.as_bytes()),
-        Err(fmt::Error) => port.dropped_unmade(Kind::Reply, 1),
+impl Out for Reply {
+    fn line(&mut self, text: fmt::Arguments<'_>) {
+        let length = self.text.len();
+        if write!(self.text, "{text}\r\n").is_err() {
+            self.text.truncate(length);
+            self.lost += 1;
+        }
     }
 }

@@ -6,46 +6,33 @@
 //!   Firmware: 0.1.0.0 (Nov 24 2026), slot A, confirmed
 //!   Started by: watchdog
 //!   Last crash: watchdog: core 1 stopped; firmware 0.1.0.0 after 12.345 s; blocks=… (2 since power-on)
-//!   OK
 //! ```
 
-use crate::console::reply;
 use crate::receiver::Receiver;
 use boot_contract::boot_log::SlotName;
 use boot_contract::hand_over::Cause;
-use shell::OK;
+use shell::{Device, Out};
 
-/// Tells it on CONSOLE.
-pub fn tell(receiver: &mut Receiver) {
-    let (start, unique_id, crash) = (receiver.start, receiver.unique_id, receiver.crash);
-    let header = receiver.confirm.header();
+/// Tells it.
+pub fn tell(receiver: &Receiver, out: &mut dyn Out) {
+    let identity = receiver.identity();
     let slot = receiver.confirm.slot().map_or("unknown", SlotName::letter);
     let standing = if receiver.confirm.is_confirmed() {
         "confirmed"
     } else {
         "on trial"
     };
-    let port = &mut receiver.console.port;
-    if let Some(header) = header {
-        reply(port, format_args!("Device: {}", header.board_name()));
+    out.line(format_args!("Device: {}", identity.device));
+    out.line(format_args!("Serial number: {}", identity.serial));
+    let version = identity.version;
+    out.line(format_args!("Firmware: {version}, slot {slot}, {standing}"));
+    let start = receiver.start.map_or("unknown", Cause::name);
+    out.line(format_args!("Started by: {start}"));
+    match receiver.crash {
+        Some(crash) => out.line(format_args!(
+            "Last crash: {crash} ({} since power-on)",
+            crash.count
+        )),
+        None => out.line(format_args!("Last crash: none since power-on")),
     }
-    let id = u64::from_be_bytes(unique_id);
-    reply(port, format_args!("Serial number: {id:016X}"));
-    if let Some(header) = header {
-        let version = header.version_text();
-        reply(
-            port,
-            format_args!("Firmware: {version}, slot {slot}, {standing}"),
-        );
-    }
-    let start = start.map_or("unknown", Cause::name);
-    reply(port, format_args!("Started by: {start}"));
-    match crash {
-        Some(crash) => reply(
-            port,
-            format_args!("Last crash: {crash} ({} since power-on)", crash.count),
-        ),
-        None => reply(port, format_args!("Last crash: none since power-on")),
-    }
-    reply(port, format_args!("{OK}"));
 }

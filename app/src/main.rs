@@ -10,31 +10,33 @@
 //! The watchdog is fed by core 0 only after core 1 has taken another block: when either loop stops, the chip restarts within
 //! [`WATCHDOG_US`], through the bootloader, which verifies the image again.
 //!
-//! Defaults until settings exist: CONSOLE reports CSBEE, COMMS_UART BEAST at 115200 8N1, trigger level 1300 mV.
+//! Settings are loaded before the first frame and acted on (`commands`); the states RUN and CONFIGURATION are `state`'s.
 //!
 //! How the image ended is kept over the reset and told by `AT+INFO` (`crash`).
 //!
-//! Not here yet: settings, CONFIGURATION, GNSS and PPS, automatic trigger level.
+//! Not here yet: GNSS and PPS, automatic trigger level.
 #![no_std]
 #![no_main]
 #![forbid(unsafe_code)]
 
+mod commands;
 mod confirm;
 mod console;
 mod core1;
 mod crash;
-#[allow(dead_code, reason = "the shell's commands call it")]
 mod hardware;
+mod identity;
 mod info;
 mod outlets;
 mod receiver;
+mod state;
 mod stats;
-#[allow(dead_code, reason = "the shell's commands call it")]
+#[allow(dead_code, reason = "the self-test calls the rest")]
 mod store;
 
 use boot_contract::hand_over::{Cause, HandOver};
 use confirm::{Confirm, Due};
-use console::Console;
+use console::Inputs;
 use core::sync::atomic::Ordering;
 use core1::{Context, QUEUE_SLOTS, QueueCounters};
 use crash::Crash;
@@ -48,10 +50,10 @@ use hal::take_once::TakeOnce;
 use hal::{Parts, sleep, timer, watchdog};
 use hardware::Hardware;
 use heapless::spsc::Queue;
-use receiver::{AIRCRAFT, Receiver, SharedCounters, UsbDrive};
+use receiver::{AIRCRAFT, Receiver, SharedCounters};
 use reporter::Reporter;
-use settings::Settings;
-use settings::choices::Protocol;
+use settings::Stored;
+use state::States;
 use stats::DecodeCounters;
 use store::SettingsStore;
 use tracker::Tracker;
@@ -95,11 +97,12 @@ fn start() -> Option<core::convert::Infallible> {
     let mut parts = Parts::take()?;
     parts.watchdog.start(WATCHDOG_US);
     let mut led = Led::new(parts.led);
-    let hardware = Hardware::new(parts.bias_tee, parts.esp32_enable, parts.boot_config);
+    let mut hardware = Hardware::new(parts.bias_tee, parts.esp32_enable, parts.boot_config);
     let mut store = SettingsStore::new(parts.i2c, parts.settings_flash);
-    let settings_trouble = store.load().err();
+    let loaded = commands::load(&mut store);
+    let settings_trouble = loaded.err();
     // A PWM that cannot be set is not a thing on this chip: the error type is empty.
-    let _trigger_level = TriggerLevel::new(parts.trigger_level).ok()?;
+    let mut trigger_level = TriggerLevel::new(parts.trigger_level).ok()?;
     let console = parts.usb.attach()?;
 
     let (producer, consumer) = QUEUE.take()?.split();
@@ -117,16 +120,18 @@ fn start() -> Option<core::convert::Infallible> {
     });
     let mut wakes = parts.core1.launch(context, core1::run);
 
+    let stored = loaded.unwrap_or(Stored::FACTORY);
+    trigger_level.set_mv(stored.settings.tl_hi_mv).ok()?;
+    let confirm = Confirm::new(parts.flash);
+    let is_held = hardware.is_config_held();
     let mut receiver = Receiver {
         console: Reporter::new(settings::Port::Console, outlets::Console(console)),
         comms: Reporter::new(settings::Port::CommsUart, outlets::Comms(parts.comms_uart)),
-        settings: Settings::FACTORY,
         queue: consumer,
         tracker: TRACKER.take()?,
         shared: &SHARED,
         decode: DecodeCounters::default(),
         commands: 0,
-        commands_lost: 0,
         comms_received: 0,
         capture_start_us,
         start: cause,
@@ -135,19 +140,21 @@ fn start() -> Option<core::convert::Infallible> {
         is_ending_second: false,
         last: (0, 0),
         leave: None,
-        confirm: Confirm::new(parts.flash),
-        unique_id: parts.unique_id,
+        states: States::new(settings_trouble.is_some(), is_held),
+        version: identity::version(&confirm),
+        board: identity::board(&confirm),
+        serial: identity::serial(parts.unique_id),
+        confirm,
+        trigger_level,
         crash: Crash::at_start(cause),
-        usb_drive: UsbDrive::Disabled,
+        is_usb_drive_allowed: false,
         store,
         settings_trouble,
         hardware,
+        stored,
     };
-    // Until settings are stored.
-    receiver.settings.console.set_protocol(Protocol::Csbee);
-    receiver.settings.comms_uart.set_protocol(Protocol::Beast);
-    receiver.apply();
-    let mut input = Console::new();
+    receiver.act_on_all();
+    let mut input = Inputs::new();
     let mut next_beat_us = timer::now_us() + BEAT_US;
     // Before the first beat too an end shall be told.
     receiver.life(0).keep();
@@ -167,7 +174,8 @@ fn start() -> Option<core::convert::Infallible> {
 
         let now_us = timer::now_us();
         if now_us >= next_beat_us {
-            led.beat();
+            receiver.see_pin();
+            led.beat(receiver.shows());
             next_beat_us = next_beat(now_us, capture_start_us);
             let stalled_ms = (now_us - block_seen_us) / 1000;
             receiver.life(stalled_ms as u32).keep();

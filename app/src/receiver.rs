@@ -9,25 +9,26 @@
 //! Time here is milliseconds of uptime, counted from the first sample, which is the zero of the frames' ticks too.
 
 use crate::confirm::Confirm;
-use crate::console::{self, Console};
+use crate::console::Inputs;
 use crate::core1::QueueCounters;
 use crate::crash::{Crash, Life};
 use crate::hardware::Hardware;
 use crate::outlets;
-use crate::stats::{DecodeCounters, Line, Stats};
+use crate::state::States;
+use crate::stats::{DecodeCounters, Stats};
 use crate::store::{SettingsStore, Trouble};
 use boot_contract::hand_over::{Cause, HandOver};
-use core::fmt;
 use core::sync::atomic::Ordering;
 use demod::RawFrame;
 use drivers::pulse_capture::CaptureCounters;
-use hal::board::LED_GPIO;
+use drivers::trigger_level::TriggerLevel;
+use hal::board::{LED_GPIO, TriggerLevelPwm};
 use hal::{boot, timer, watchdog};
 use heapless::spsc::Consumer;
 use mode_s::Message;
 use report::{Bits, FrameReport, FrameTimes, Moment, Statistics};
-use reporter::{Port, Reporter, Second};
-use settings::Settings;
+use reporter::{Reporter, Second};
+use settings::Stored;
 use tracker::{Heard, Tracker};
 
 /// Aircraft tracked at once.
@@ -53,14 +54,15 @@ pub struct SharedCounters {
 pub struct Receiver {
     pub console: Reporter<outlets::Console>,
     pub comms: Reporter<outlets::Comms>,
-    /// In force.
-    pub settings: Settings,
+    pub states: States,
+    /// The settings in force, and the keys of a newer version that are stored beside them.
+    pub stored: Stored,
+    pub trigger_level: TriggerLevel<TriggerLevelPwm>,
     pub queue: Consumer<'static, RawFrame>,
     pub tracker: &'static mut Tracker<AIRCRAFT>,
     pub shared: &'static SharedCounters,
     pub decode: DecodeCounters,
     pub commands: u32,
-    pub commands_lost: u32,
     pub comms_received: u32,
     /// Microseconds of the timer at the first sample.
     pub capture_start_us: u64,
@@ -76,18 +78,25 @@ pub struct Receiver {
     /// When to leave, microseconds of the timer, and where to.
     pub leave: Option<(u64, Leave)>,
     pub confirm: Confirm,
-    /// The flash's, which is the serial number.
-    pub unique_id: [u8; 8],
+    /// `a.b.c.d (Mon D YYYY)` of the image.
+    pub version: Text,
+    /// The board's name.
+    pub board: Text,
+    /// The flash part's unique id.
+    pub serial: Text,
     /// The last one since power-on.
     pub crash: Option<Crash>,
-    pub usb_drive: UsbDrive,
+    /// Whether `AT+BOOT_USB_UF2` may be obeyed: never from the start.
+    pub is_usb_drive_allowed: bool,
     /// Where the settings are kept, and why they were not loaded at the start.
     pub store: SettingsStore,
     pub settings_trouble: Option<Trouble>,
     /// The parts that commands act on.
-    #[allow(dead_code, reason = "the shell's commands call it")]
     pub hardware: Hardware,
 }
+
+/// Room for what tells who the device is.
+pub type Text = heapless::String<32>;
 
 /// How the image ends by command.
 #[derive(Clone, Copy)]
@@ -96,13 +105,6 @@ pub enum Leave {
     Restart(HandOver),
     /// The ROM's USB drive.
     UsbDrive,
-}
-
-/// Whether `AT+BOOT_USB_UF2` may be obeyed: never from the start.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum UsbDrive {
-    Disabled,
-    Enabled,
 }
 
 impl Receiver {
@@ -122,6 +124,10 @@ impl Receiver {
             let Some(raw_frame) = self.queue.dequeue() else {
                 return false;
             };
+            if !(self.states.is_receiving && self.stored.settings.rx_enable) {
+                self.decode.discarded = self.decode.discarded.wrapping_add(1);
+                continue;
+            }
             heard();
             let message = Message::decode(&raw_frame.frame);
             self.decode.count(message.parity);
@@ -176,7 +182,7 @@ impl Receiver {
         let statistics = Statistics {
             demodulations: Some(demodulated.wrapping_sub(self.last.0)),
             mode_s_frames: Some(self.decode.offered.wrapping_sub(self.last.1)),
-            uptime_s: self.second,
+            uptime_s: self.run_s(),
             ..Statistics::default()
         };
         self.last = (demodulated, self.decode.offered);
@@ -188,27 +194,10 @@ impl Receiver {
         self.comms.second(self.tracker, &second);
     }
 
-    /// Puts `settings` into force on both ports.
-    pub fn apply(&mut self) {
-        self.console.apply(&self.settings);
-        self.comms.apply(&self.settings);
-    }
-
-    /// Answers commands; takes away what COMMS_UART received (nothing is commanded there yet). Returns whether anything moved.
-    pub fn commands(&mut self, input: &mut Console) -> bool {
-        let (mut moved, lost) = input.poll(&mut self.console);
-        self.commands_lost = self.commands_lost.wrapping_add(lost);
-        while let Some(command) = input.next() {
-            self.commands = self.commands.wrapping_add(1);
-            console::answer(command, self);
-            moved = true;
-        }
-        while let Some(byte) = self.comms.port.outlet.0.receive() {
-            self.comms_received = self.comms_received.wrapping_add(1);
-            // No command is taken here yet.
-            let _ = self.comms.heard(byte);
-        }
-        self.comms.port.outlet.0.serve();
+    /// Serves both ports and answers what was typed. Returns whether anything moved.
+    pub fn commands(&mut self, inputs: &mut Inputs) -> bool {
+        let moved = inputs.serve(self);
+        self.go_on_moving();
         moved
     }
 
@@ -254,12 +243,10 @@ impl Receiver {
         }
     }
 
-    /// Gives each line of `AT+STATS?`, with CONSOLE to send it on.
-    pub fn tell_statistics(
-        &mut self,
-        mut tell: impl FnMut(&mut Port<outlets::Console>, Result<Line, fmt::Error>),
-    ) {
-        let stats = Stats {
+    /// The counters of every stage.
+    pub fn stats(&mut self) -> Stats<'_> {
+        let i2c = self.store.bus().map(|bus| bus.counters);
+        Stats {
             uptime_s: self.second,
             start: self.start,
             slot: self.confirm.slot(),
@@ -272,16 +259,14 @@ impl Receiver {
             settings_trouble: self.settings_trouble,
             store: self.store.counts(),
             store_place: self.store.place(),
-            i2c: self.store.bus().map(|bus| bus.counters),
+            i2c,
             tracker: self.tracker.counters(),
             tracked: self.tracker.len(),
             console: self.console.port.counters(),
             comms_uart: self.comms.port.counters(),
             commands: self.commands,
-            commands_lost: self.commands_lost,
             comms_received: self.comms_received,
             comms_received_lost: self.comms.port.outlet.0.received_lost(),
-        };
-        stats.lines(|line| tell(&mut self.console.port, line));
+        }
     }
 }

@@ -10,7 +10,7 @@
 //!   +STATS=TRACKER,offered=..,born=..,..        see services/tracker
 //!   +STATS=STORE,saves=..,..,place=..,loaded=.. saves: since the first; a bank's pages were written a quarter as often
 //!   +STATS=I2C,transfers=..,refused=..,..       on boards that have the bus
-//!   +STATS=CONSOLE,offered=..,sent=..,dropped=..,bytes=..,frames=..,frames_dropped=..,aircraft=..,..,commands=..,commands_lost=..
+//!   +STATS=CONSOLE,offered=..,sent=..,dropped=..,bytes=..,frames=..,frames_dropped=..,aircraft=..,..,commands=..
 //!   +STATS=COMMS_UART,the same,received=..,received_lost=..
 //! ```
 //! The sums that hold at rest (while frames arrive they may be off by what is under way):
@@ -19,7 +19,7 @@
 //! |---|
 //! | DEMOD the five accepted = QUEUE offered |
 //! | QUEUE offered = queued + dropped |
-//! | QUEUE queued = DECODE offered + QUEUE waiting |
+//! | QUEUE queued = DECODE offered + DECODE discarded + QUEUE waiting |
 //! | DECODE offered = exact + interrogator + address + broken + unjudged = TRACKER offered |
 //! | TRACKER offered = born + updated + duplicate + unknown_address + no_address + no_place + broken + not_tracked |
 //! | STORE saved + unchanged + failed = saves asked for |
@@ -46,6 +46,8 @@ pub struct DecodeCounters {
     pub address: u32,
     pub broken: u32,
     pub unjudged: u32,
+    /// Taken while reception is off: in CONFIGURATION, or by `RX_ENABLE=0`.
+    pub discarded: u32,
 }
 
 /// Everything the reply needs, by reference.
@@ -69,7 +71,6 @@ pub struct Stats<'a> {
     pub console: PortCounters,
     pub comms_uart: PortCounters,
     pub commands: u32,
-    pub commands_lost: u32,
     pub comms_received: u32,
     pub comms_received_lost: u32,
 }
@@ -86,7 +87,7 @@ fn value(counter: &AtomicU32) -> u32 {
 
 fn line(stage: &str, pairs: &[(&str, u32)]) -> Result<Line, fmt::Error> {
     let mut line = Line::new();
-    write!(line, "+STATS={stage}")?;
+    write!(line, "STATS={stage}")?;
     for (name, value) in pairs {
         write!(line, ",{name}={value}")?;
     }
@@ -162,6 +163,7 @@ impl Stats<'_> {
                 ("address", decode.address),
                 ("broken", decode.broken),
                 ("unjudged", decode.unjudged),
+                ("discarded", decode.discarded),
             ],
         ));
         let tracker = &self.tracker;
@@ -188,11 +190,7 @@ impl Stats<'_> {
         ));
         self.settings(&mut out);
         out(port("CONSOLE", &self.console).and_then(|mut line| {
-            write!(
-                line,
-                ",commands={},commands_lost={}",
-                self.commands, self.commands_lost
-            )?;
+            write!(line, ",commands={}", self.commands)?;
             Ok(line)
         }));
         out(port("COMMS_UART", &self.comms_uart).and_then(|mut line| {

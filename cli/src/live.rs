@@ -55,7 +55,7 @@ pub fn command() -> Command {
             Arg::new("protocol")
                 .long("protocol")
                 .value_name("NAME")
-                .help("Protocol of CONSOLE: NONE, RAW, BEAST or CSBEE [default: the image's own]"),
+                .help("Protocol of CONSOLE: NONE, RAW, BEAST or CSBEE [default: CSBEE, where the console is open]"),
         )
         .arg(
             Arg::new("at")
@@ -179,9 +179,12 @@ impl Session {
     ) -> Result<Self, Failure> {
         board.wait_for_capture()?;
         let listens = board.wait_for_console_if_expected()?;
-        let protocol = matches.get_one::<String>("protocol");
+        let named = matches.get_one::<String>("protocol").map(String::as_str);
+        // Somebody who watches wants to see something; a program on a port finds the device as it is.
+        let watches = listens && serial.is_none() && !matches.contains_id("at");
+        let protocol = named.or(watches.then_some("CSBEE"));
         let lines = matches.get_many::<String>("at").into_iter().flatten();
-        let commands = protocol.is_some() || matches.contains_id("at");
+        let commands = named.is_some() || matches.contains_id("at");
         if !listens && commands {
             let text = "--at and --protocol need the console, and no host has it open";
             return Err(Failure::Usage(text.into()));

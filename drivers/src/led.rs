@@ -1,12 +1,35 @@
-//! The status LED: lit for one beat after a frame, so that a glance tells traffic from silence.
+//! The status LED: lit for one beat after a frame, so that a glance tells traffic from silence; slow blinks in CONFIGURATION.
+//!
+//! | shows | LED |
+//! |---|---|
+//! | frames | lit for the beat after one |
+//! | slow | [`SLOW_BEATS`] beats on, as many off |
+//! | dark | off |
+//!
+//! (Fast blinks are the bootloader's.)
 
 use embedded_hal::digital::OutputPin;
+
+/// Beats of half a slow blink: half a second at 20 beats a second.
+pub const SLOW_BEATS: u8 = 10;
+
+/// What it shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shows {
+    /// Frames.
+    Frames,
+    /// Slow blinks.
+    Slow,
+    /// Nothing.
+    Dark,
+}
 
 /// The LED; high is on.
 pub struct Led<P> {
     pin: P,
     lit: bool,
     heard: bool,
+    beats: u8,
 }
 
 impl<P: OutputPin> Led<P> {
@@ -16,6 +39,7 @@ impl<P: OutputPin> Led<P> {
             pin,
             lit: false,
             heard: false,
+            beats: 0,
         }
     }
 
@@ -24,17 +48,23 @@ impl<P: OutputPin> Led<P> {
         self.heard = true;
     }
 
-    /// Called at a steady beat (20 a second): shows what was heard since the last one.
-    pub fn beat(&mut self) {
-        if self.heard != self.lit {
+    /// Called at a steady beat (20 a second).
+    pub fn beat(&mut self, shows: Shows) {
+        self.beats = (self.beats + 1) % (2 * SLOW_BEATS);
+        let light = match shows {
+            Shows::Frames => self.heard,
+            Shows::Slow => self.beats < SLOW_BEATS,
+            Shows::Dark => false,
+        };
+        if light != self.lit {
             // A pin that cannot be set leaves the LED as it is; nothing depends on it.
-            let done = if self.heard {
+            let done = if light {
                 self.pin.set_high()
             } else {
                 self.pin.set_low()
             };
             if done.is_ok() {
-                self.lit = self.heard;
+                self.lit = light;
             }
         }
         self.heard = false;

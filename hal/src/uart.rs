@@ -369,6 +369,11 @@ impl<const TX: usize, const RX: usize> Uart<TX, RX> {
     }
 }
 
+/// The rate a divisor gives for this one, bits a second.
+pub fn actual_baud(baud: u32) -> u32 {
+    4 * crate::SYSTEM_HZ / divisor(baud)
+}
+
 /// PL011: the divisor in 64ths is 4 x clock / baud, rounded; 1 to 65535 whole.
 fn divisor(baud: u32) -> u32 {
     let divisor = (4 * u64::from(crate::SYSTEM_HZ) + u64::from(baud) / 2) / u64::from(baud);

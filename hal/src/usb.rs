@@ -30,7 +30,7 @@ use usbd_serial::{CdcAcmClass, USB_CLASS_CDC};
 /// Bytes of the ring of messages, two of each for its length.
 pub const TX_BYTES: usize = 16_384;
 /// Bytes of the ring of replies.
-pub const REPLY_BYTES: usize = 4096;
+pub const REPLY_BYTES: usize = 8192;
 /// Bytes of a bulk packet (full speed's largest).
 pub const PACKET: usize = 64;
 
@@ -122,10 +122,22 @@ impl UsbConsole {
     /// Serves the bus and moves one packet each way, each received byte into `received`. Returns whether anything moved: call
     /// again before sleeping if so. A host that types faster than it is answered waits: its next packet is not taken before.
     pub fn poll(&mut self, received: impl FnMut(u8)) -> bool {
+        self.serve(true, received)
+    }
+
+    /// As [`UsbConsole::poll`], without taking the host's next packet: it waits in the controller, and the host with it.
+    pub fn poll_sending(&mut self) -> bool {
+        self.serve(false, |_| {})
+    }
+
+    fn serve(&mut self, take: bool, received: impl FnMut(u8)) -> bool {
         let mut moved = self.device.poll(&mut [&mut self.class]);
         let mut packet = [0; PACKET];
         // Without an event there is nothing to read; a packet that is not taken stays an event.
-        if moved && let Ok(count) = self.class.read_packet(&mut packet) {
+        if take
+            && moved
+            && let Ok(count) = self.class.read_packet(&mut packet)
+        {
             packet[..count].iter().copied().for_each(received);
         }
         if self.is_open() {

@@ -238,6 +238,12 @@ const QUERY_OR_SET: Forms = Forms {
     set: true,
 };
 
+const ANY: Forms = Forms {
+    bare: true,
+    query: true,
+    set: true,
+};
+
 const fn command(action: Action, forms: Forms) -> What {
     What::Command { action, forms }
 }
@@ -269,7 +275,6 @@ pub static ENTRIES: &[Entry] = &[
     entry(Group::System, "SYSTEM_STATISTICS", &[], "<CONSOLE|COMMS_UART>,<0-2>",
         "System statistics protocol(0:none, 1:CSV, 2:JSON)",
         setting(Scope::Port, &[Field::SystemStatistics])),
-    entry(Group::System, "UPTIME", &[], "", "Seconds since entering RUN", value(Info::Uptime)),
 
     entry(Group::Adsb, "ADSB_RX_PROTOCOL_DECODED", &[], "<CONSOLE|COMMS_UART>,<protocol>",
         "ADSB_RX decoded protocol (0:none, 1:CSV, 2:MAVLink, 3:JSON, 4:GDL90, 5:ASTERIX)",
@@ -335,8 +340,9 @@ pub static ENTRIES: &[Entry] = &[
 
     entry(Group::Commands, "3RD_PARTY_LICENSES", &[], "", "Displays licenses of third party software",
         command(Action::Licenses, EITHER)),
-    entry(Group::Commands, "BOOT_USB_UF2", &[], "", "Restarts as a USB drive that takes a UF2 file",
-        command(Action::BootUsbUf2, BARE)),
+    entry(Group::Commands, "BOOT_USB_UF2", &[], "<0|1>",
+        "Ends in the chip's own USB drive, once set to 1 (until the next start); it forgets who may sign firmware",
+        command(Action::BootUsbUf2, ANY)),
     entry(Group::Commands, "DEVICE_INFO", &[], "?", "Part, firmware, serial number", command(Action::DeviceInfo, EITHER)),
     entry(Group::Commands, "GNSS", &[], "?", "The GNSS receiver's fix and the pulse per second", command(Action::Gnss, QUERY)),
     entry(Group::Commands, "HELP", &[], "", "Show this help", command(Action::Help, EITHER)),
@@ -349,6 +355,7 @@ pub static ENTRIES: &[Entry] = &[
     entry(Group::Commands, "STATS", &[], "?", "What every stage was offered, passed and refused", command(Action::Stats, QUERY)),
     entry(Group::Commands, "TEST", &[], "", "Responds \"AT+OK\"", command(Action::Test, BARE)),
     entry(Group::Commands, "TL_READ", &["MTLREAD"], "?", "Trigger levels as read back, millivolts", command(Action::TlRead, EITHER)),
+    entry(Group::Commands, "UPTIME", &[], "?", "Seconds since entering RUN", value(Info::Uptime)),
 ];
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! A line cut into command name and kind.
 //!
 //! ```text
+//!   AT                 attention
 //!   AT+NAME            bare
-//!   AT+NAME?           query
+//!   AT+NAME?           query; AT+NAME?WORD asks in a way of its own
+//!   AT+NAME=?          description
 //!   AT+NAME=a,b,c      set, arguments split on ',', a blank one leaves its value unchanged
 //! ```
 
@@ -13,8 +15,10 @@ use crate::refusal::Refusal;
 pub enum Kind<'a> {
     /// `AT+NAME`
     Bare,
-    /// `AT+NAME?`
-    Query,
+    /// `AT+NAME?`, and what follows the sign.
+    Query(&'a str),
+    /// `AT+NAME=?`
+    Describe,
     /// `AT+NAME=…`: the text behind the sign, to be split on commas.
     Set(&'a str),
 }
@@ -22,7 +26,7 @@ pub enum Kind<'a> {
 /// A command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Command<'a> {
-    /// The name, as typed.
+    /// The name, as typed; empty for `AT` alone.
     pub name: &'a str,
     /// What is asked.
     pub kind: Kind<'a>,
@@ -31,29 +35,39 @@ pub struct Command<'a> {
 impl<'a> Command<'a> {
     /// Cuts a line without its end.
     pub fn parse(line: &'a str) -> Result<Command<'a>, Refusal> {
+        if line == "AT" {
+            return Ok(Command {
+                name: "",
+                kind: Kind::Bare,
+            });
+        }
         let text = line.strip_prefix("AT+").ok_or(Refusal::NotACommand)?;
         let end = text.find(['=', '?']).unwrap_or(text.len());
         let (name, rest) = text.split_at(end);
-        let kind = match rest.as_bytes() {
-            [] => Kind::Bare,
-            [b'?'] => Kind::Query,
-            [b'=', ..] => Kind::Set(&rest[1..]),
-            _ => return Err(Refusal::NoQuery),
+        if name.is_empty() {
+            return Err(Refusal::UnknownCommand);
+        }
+        let kind = match rest {
+            "" => Kind::Bare,
+            "=?" => Kind::Describe,
+            _ if rest.starts_with('?') => Kind::Query(&rest[1..]),
+            _ => Kind::Set(&rest[1..]),
         };
         Ok(Command { name, kind })
     }
 }
 
-/// Exactly `N` arguments of a `Set`; a blank one is `None`.
-pub(crate) fn arguments<const N: usize>(text: &str) -> Result<[Option<&str>; N], Refusal> {
-    let mut found = [None; N];
-    let mut pieces = text.split(',');
-    for argument in &mut found {
-        let piece = pieces.next().ok_or(Refusal::ArgumentCount)?;
-        *argument = (!piece.is_empty()).then_some(piece);
+/// Longest list of arguments.
+pub(crate) const MAX_ARGUMENTS: usize = 4;
+
+/// Up to `most` arguments of a `Set`; a blank or missing one is `None`.
+pub(crate) fn arguments(text: &str, most: usize) -> Result<[Option<&str>; MAX_ARGUMENTS], Refusal> {
+    let mut found = [None; MAX_ARGUMENTS];
+    for (index, piece) in text.split(',').enumerate() {
+        if index >= most.min(MAX_ARGUMENTS) {
+            return Err(Refusal::ArgumentCount);
+        }
+        found[index] = (!piece.is_empty()).then_some(piece);
     }
-    match pieces.next() {
-        None => Ok(found),
-        Some(_) => Err(Refusal::ArgumentCount),
-    }
+    Ok(found)
 }

@@ -1,27 +1,47 @@
-//! AT command lines of the ADSBee dialect: bytes in, requests out, replies as text.
+//! AT command lines in both dialects: bytes in, replies out, and the states between which the device moves.
 //!
 //! ```text
-//!   bytes, in any split ──► LineReader ──► line ──► Command {name, kind} ──► table ──► Request | Refusal
+//!   bytes, in any split ─▶ LineReader ─▶ line ─▶ Command {name, kind} ─▶ registry ─▶ answer() ─▶ reply lines
+//!                                                                          │            ├─▶ Listing: a long reply, a line at a time
+//!                                                                          ▼            └─▶ Event ─▶ Machine ─▶ steps
+//!                                                                       Device: the app
 //! ```
-//! What it is not: it executes nothing and owns no port. The app carries a [`Request`] out and writes the reply.
+//! The state picks the dialect:
 //!
-//! One table (`commands`) drives parsing and `AT+HELP`, so a command without help text cannot exist.
+//! | state | port | understands | success | query | failure |
+//! |---|---|---|---|---|---|
+//! | RUN | CONSOLE | upper case | `OK` | `+X=v` | `ERROR <why>` |
+//! | RUN | COMMS_UART | `AT+CONFIG=1` and `=2` alone | `AT+OK` | – | silence |
+//! | CONFIGURATION | both | any case after `AT+` | `AT+OK` | `AT+X=v` | `AT+ERROR (<why>)` |
+//!
+//! `AT+CONFIG` and `AT+LOCK` speak the second dialect in RUN too. What it is not: it owns no port, no setting and no part; the app's
+//! [`Device`] acts.
 #![no_std]
 #![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;
 
+mod answer;
 mod command;
-mod commands;
+mod device;
+mod dialect;
+mod licenses;
 mod line;
-mod ports;
+mod list;
+#[cfg(any(test, feature = "model"))]
+pub mod model;
 mod refusal;
-mod reply;
+mod setting;
+mod shown;
+pub mod state;
 
+pub use answer::{After, answer};
 pub use command::{Command, Kind};
-pub use commands::{Request, help_lines};
-pub use line::{LINE_BYTES, LineReader};
-pub use ports::{HIGHEST_BAUD, LOWEST_BAUD, Port, Protocol, Uart};
+pub use device::{BaudRates, Device, Failure, Identity, Report, Saving};
+pub use dialect::{Dialect, Out};
+pub use line::{Input, LINE_BYTES, LineReader};
+pub use list::Listing;
 pub use refusal::Refusal;
-pub use reply::{BaudRateReply, OK, ProtocolReply};
+pub use shown::Place;
+pub use state::{Event, Machine, Rate, Restart, State, Step};

@@ -2,18 +2,16 @@
 //!
 //! ```text
 //!   state      byte                    next        told
-//!   Start      A, T, + of "AT+"        Start       (the line grows)
-//!   ...        \r, \n                  empty       the line's request or refusal; an empty line is nothing
-//!   ...        not printable ASCII     Skipping    nothing: what came before was no typed line
-//!   Skipping   A, T, + in a row        Line        (a line begins anew behind binary bytes)
-//!   Skipping   \r, \n                  empty       nothing: binary bytes are never answered
-//!   Line       one byte too many       Overlong    LineTooLong, once
-//!   Overlong   \r, \n                  empty       nothing
+//!   Line       printable               Line        nothing: the line grows
+//!   Line       \r, \n                  Line        the line; an empty one is nothing
+//!   Line       not printable ASCII     Skipping    nothing: what came before was no typed line
+//!   Line       one byte too many       Overlong    TooLong, once
+//!   Skipping   A, T, + in a row        Line        nothing: a line begins anew behind binary bytes
+//!   Skipping   \r, \n                  Line        nothing: binary bytes are never answered
+//!   Overlong   \r, \n                  Line        nothing
 //! ```
-//! A `\r\n` is one line end: the `\n` behind the `\r` is an empty line.
-
-use crate::commands::{Request, request};
-use crate::refusal::Refusal;
+//! A `\r\n` is one line end: the `\n` behind the `\r` is an empty line. The bytes by which a Beast client sets options (`1A 31 <letter>`) are
+//! binary: swallowed, never answered.
 
 /// Longest line without its end, bytes.
 pub const LINE_BYTES: usize = 128;
@@ -30,11 +28,22 @@ enum State {
     Overlong,
 }
 
-/// Cuts a byte stream into lines and parses each.
+/// What a byte completed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Input<'a> {
+    /// A line without its end.
+    Line(&'a str),
+    /// More than [`LINE_BYTES`] without an end.
+    TooLong,
+}
+
+/// Cuts a byte stream into lines.
 #[derive(Clone, Debug)]
 pub struct LineReader {
     text: [u8; LINE_BYTES],
     length: usize,
+    /// The line was told: the next byte begins another.
+    told: bool,
     state: State,
 }
 
@@ -44,17 +53,22 @@ impl LineReader {
         LineReader {
             text: [0; LINE_BYTES],
             length: 0,
+            told: false,
             state: State::Line,
         }
     }
 
     /// Takes the next byte; tells when a line ends or grows too long.
-    pub fn feed(&mut self, byte: u8) -> Option<Result<Request, Refusal>> {
+    pub fn feed(&mut self, byte: u8) -> Option<Input<'_>> {
+        if core::mem::take(&mut self.told) {
+            self.length = 0;
+        }
         match (self.state, byte) {
             (State::Line, b'\r' | b'\n') => {
-                let told = (self.length > 0).then(|| self.parse());
-                self.length = 0;
-                told
+                self.told = self.length > 0;
+                // Only printable ASCII is in it.
+                let line = core::str::from_utf8(&self.text[..self.length]).unwrap_or("");
+                self.told.then_some(Input::Line(line))
             }
             (_, b'\r' | b'\n') => {
                 *self = LineReader::new();
@@ -82,7 +96,7 @@ impl LineReader {
         }
     }
 
-    fn push(&mut self, byte: u8) -> Option<Result<Request, Refusal>> {
+    fn push(&mut self, byte: u8) -> Option<Input<'_>> {
         match self.text.get_mut(self.length) {
             Some(place) => {
                 *place = byte;
@@ -91,14 +105,9 @@ impl LineReader {
             }
             None => {
                 self.state = State::Overlong;
-                Some(Err(Refusal::LineTooLong))
+                Some(Input::TooLong)
             }
         }
-    }
-
-    fn parse(&self) -> Result<Request, Refusal> {
-        let text = core::str::from_utf8(&self.text[..self.length]);
-        request(text.map_err(|_| Refusal::NotACommand)?)
     }
 }
 

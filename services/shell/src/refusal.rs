@@ -1,10 +1,10 @@
-//! Why a line was refused. `Display` writes the reply without its line end: `ERROR <text>`.
+//! Why a line was refused. `Display` writes the reason alone; the dialect puts it into its reply.
 
-use crate::ports::{HIGHEST_BAUD, LOWEST_BAUD, Protocol};
 use core::fmt;
+use settings::{Conflict, Refused};
 
 /// Why a line was refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum Refusal {
     /// Longer than [`crate::LINE_BYTES`].
     LineTooLong,
@@ -12,49 +12,54 @@ pub enum Refusal {
     NotACommand,
     /// No such command.
     UnknownCommand,
-    /// The command exists, but not with `?`.
+    /// The command exists, but not with `?`, or not with that word behind it.
     NoQuery,
     /// The command exists, but not with `=`.
     NoSet,
     /// The command exists, but needs `?` or `=`.
     NotBare,
-    /// More or fewer arguments than the command has.
+    /// More arguments than the command has, or none.
     ArgumentCount,
     /// No such interface.
     UnknownInterface,
-    /// No such protocol, or one that is not built.
-    UnknownProtocol,
-    /// Not a whole number.
-    NotANumber,
-    /// A baud rate outside the range.
-    BaudRateRange,
-    /// Neither 0 nor 1.
-    NotABit,
+    /// No value of the argument's kind.
+    Value(Refused),
+    /// Not one of these words.
+    Word(&'static str),
+    /// Good values that do not go together.
+    Conflict(Conflict),
+    /// Not in this state.
+    State,
+    /// The device could not do it, and says why.
+    Device(&'static str),
+}
+
+impl From<Refused> for Refusal {
+    fn from(refused: Refused) -> Self {
+        Refusal::Value(refused)
+    }
 }
 
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("ERROR ")?;
-        match self {
-            Refusal::LineTooLong => f.write_str("line too long"),
-            Refusal::NotACommand => f.write_str("a command begins with AT+"),
-            Refusal::UnknownCommand => f.write_str("unknown command, AT+HELP lists them"),
-            Refusal::NoQuery => f.write_str("this command has no query"),
-            Refusal::NoSet => f.write_str("this command takes no arguments"),
-            Refusal::NotBare => f.write_str("this command needs ? or ="),
-            Refusal::ArgumentCount => f.write_str("wrong number of arguments"),
-            Refusal::UnknownInterface => f.write_str("unknown interface"),
-            Refusal::UnknownProtocol => {
-                f.write_str("unknown protocol, available:")?;
-                Protocol::ALL
-                    .iter()
-                    .try_for_each(|protocol| write!(f, " {}", protocol.name()))
+        f.write_str(match self {
+            Refusal::LineTooLong => "line too long",
+            Refusal::NotACommand => "a command begins with AT+",
+            Refusal::UnknownCommand => "unknown command, AT+HELP lists them",
+            Refusal::NoQuery => "this command has no such query",
+            Refusal::NoSet => "this command cannot be set",
+            Refusal::NotBare => "this command needs ? or =",
+            Refusal::ArgumentCount => "wrong number of arguments",
+            Refusal::UnknownInterface => "unknown interface",
+            Refusal::Value(refused) => return refused.fmt(f),
+            Refusal::Word(words) => return write!(f, "must be one of {words}"),
+            Refusal::Conflict(Conflict::BinaryNotAlone(port)) => {
+                let port = port.name();
+                return write!(f, "a binary protocol is alone on {port}");
             }
-            Refusal::NotANumber => f.write_str("not a whole number"),
-            Refusal::NotABit => f.write_str("0 or 1"),
-            Refusal::BaudRateRange => {
-                write!(f, "baud rate must be {LOWEST_BAUD} to {HIGHEST_BAUD}")
-            }
-        }
+            Refusal::Conflict(Conflict::LevelsCrossed) => "the low level is above the high one",
+            Refusal::State => "not in this state",
+            Refusal::Device(why) => why,
+        })
     }
 }

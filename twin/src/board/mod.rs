@@ -53,6 +53,8 @@ const SYNC_CYCLES: u64 = 2;
 pub const TICK_HZ: u64 = 120_000_000;
 /// How long an image may take to start capture, and a host to open the port.
 const START_SECONDS: u64 = 6;
+/// Within this time of the port's opening the device has said its first words, ms.
+const GREETING_MS: u64 = 5;
 /// How long a trigger level may take to settle behind its RC, ms: fourteen time constants.
 const SETTLE_MS: u64 = 140;
 /// FLARM's usual rate, bits a second (its data port specification).
@@ -283,10 +285,10 @@ impl Board {
         })
     }
 
-    /// Runs until the host has opened the console.
+    /// Runs until the host has opened the console, and for the moment in which the device greets it.
     pub fn wait_for_console(&mut self) -> Result<(), Error> {
         if self.run_until(START_SECONDS, |b| b.chip.bus.usb_host.open)? {
-            return Ok(());
+            return self.run_ms(GREETING_MS);
         }
         Err(Error::NoConsole {
             comms: self.comms_text(),

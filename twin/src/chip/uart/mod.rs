@@ -176,6 +176,11 @@ impl Uart {
         self.cr & (ENABLE | direction) == ENABLE | direction
     }
 
+    /// The rate its divisor gives, bits a second.
+    pub fn baud(&self) -> f64 {
+        4.0 * self.sys_hz as f64 / f64::from(self.divisor.max(1))
+    }
+
     /// The device's own framing: a bit is 16 (IBRD + FBRD / 64) cycles of clk_peri.
     fn framing(&self) -> Framing {
         let quarters = u64::from(self.divisor) * FINE * self.sys_hz;

@@ -1,0 +1,228 @@
+//! Dialogues with the device as text files, replayed byte for byte: `tests/transcripts/*.txt`.
+//!
+//! ```text
+//!   # a comment
+//!   USB<< AT+PROTOCOL?                      typed on CONSOLE, ended by \r\n
+//!   USB>> +PROTOCOL=CONSOLE,NONE            what it says, this line and no other, ended by \r\n
+//!   UART<< at+config?\n                     another ending, where the line names one: \n, \r, or \ for none
+//!   UART<< \x1a1C\                          bytes by their codes
+//!   -- wait 1000 ms                         time passes
+//!   -- pin low, -- pin released             BOOT/CONFIG
+//!   -- uart is at 921600                    COMMS_UART's rate, within its divisor's step
+//!   -- power cut                            off and on again, up to the open console
+//!   -- starts                               waits for a start to be over, up to the open console
+//!   -- send nothing back                    the far side of both ports has said nothing unread
+//! ```
+//! `{…}` in an expected line stands for anything within the line. Each block of sends is followed by what both ports say until they are silent;
+//! between the ports the order does not matter, within one it does. What is not expected is a failure.
+
+use std::fmt::Write;
+use twin::board::Board;
+use twin::chip::bus::ResetCause;
+use twin::fault::Fault;
+
+/// Twin time a block may take until all that is expected has come, ms.
+const PATIENCE_MS: u64 = 1_500;
+/// Twin time after it in which nothing more may come, ms.
+const SILENCE_MS: u64 = 15;
+/// Time off in a power cut, ms.
+const OFF_MS: u64 = 300;
+
+/// A port of the device.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Port {
+    Usb,
+    Uart,
+}
+
+enum Line {
+    Send(Port, Vec<u8>),
+    Expect(Port, String),
+    Do(String),
+}
+
+fn parse(text: &str) -> Result<Vec<(usize, Line)>, String> {
+    let mut lines = Vec::new();
+    for (index, line) in text.lines().enumerate() {
+        let number = index + 1;
+        let (mark, rest) = line.split_once(' ').unwrap_or((line, ""));
+        let parsed = match mark {
+            "" | "#" => continue,
+            "USB<<" => Line::Send(Port::Usb, bytes(rest)),
+            "UART<<" => Line::Send(Port::Uart, bytes(rest)),
+            "USB>>" => Line::Expect(Port::Usb, rest.to_string()),
+            "UART>>" => Line::Expect(Port::Uart, rest.to_string()),
+            "--" => Line::Do(rest.to_string()),
+            _ => {
+                return Err(format!(
+                    "line {number}: {line:?} is no line of a transcript"
+                ));
+            }
+        };
+        lines.push((number, parsed));
+    }
+    Ok(lines)
+}
+
+/// The bytes of a typed line, with its ending.
+fn bytes(text: &str) -> Vec<u8> {
+    let (text, ending): (&str, &[u8]) = if let Some(text) = text.strip_suffix("\\r\\n") {
+        (text, b"\r\n")
+    } else if let Some(text) = text.strip_suffix("\\n") {
+        (text, b"\n")
+    } else if let Some(text) = text.strip_suffix("\\r") {
+        (text, b"\r")
+    } else if let Some(text) = text.strip_suffix('\\') {
+        (text, b"")
+    } else {
+        (text, b"\r\n")
+    };
+    let mut pieces = text.split("\\x");
+    let mut made = pieces.next().unwrap_or("").as_bytes().to_vec();
+    for piece in pieces {
+        let (code, rest) = piece.split_at(2);
+        made.push(u8::from_str_radix(code, 16).expect("two hexadecimal digits behind \\x"));
+        made.extend(rest.as_bytes());
+    }
+    made.extend(ending);
+    made
+}
+
+/// Replays a transcript; `Err` tells the line and what was said instead.
+pub fn replay(board: &mut Board, text: &str) -> Result<(), String> {
+    let lines = parse(text)?;
+    let mut lines = lines.iter().peekable();
+    let mut heard = [String::new(), String::new()];
+    while let Some((number, line)) = lines.next() {
+        match line {
+            Line::Send(Port::Usb, bytes) => board.console_write(bytes),
+            Line::Send(Port::Uart, bytes) => board.comms_write(bytes),
+            Line::Do(what) => act(board, what).map_err(|why| format!("line {number}: {why}"))?,
+            Line::Expect(..) => return Err(format!("line {number}: expected behind nothing")),
+        }
+        let mut expected = [Vec::new(), Vec::new()];
+        while let Some((_, Line::Expect(port, line))) = lines.peek() {
+            expected[*port as usize].push(line.as_str());
+            lines.next();
+        }
+        // Several sends in a row are one block.
+        if let (Line::Send(..), Some((_, Line::Send(..)))) = (line, lines.peek()) {
+            continue;
+        }
+        hear(board, &expected, &mut heard)?;
+        for (port, name) in ["USB", "UART"].into_iter().enumerate() {
+            let said = std::mem::take(&mut heard[port]);
+            compare(name, &expected[port], &said)
+                .map_err(|why| format!("behind line {number}: {why}"))?;
+        }
+    }
+    Ok(())
+}
+
+/// Runs until as many lines have come as are expected, and a silence after them.
+fn hear(
+    board: &mut Board,
+    expected: &[Vec<&str>; 2],
+    heard: &mut [String; 2],
+) -> Result<(), String> {
+    let mut quiet_ms = 0;
+    for _ in 0..PATIENCE_MS {
+        board.run_ms(1).map_err(|error| error.to_string())?;
+        let said = [board.console_read(), board.comms_read()];
+        let moved = said.iter().any(|said| !said.is_empty());
+        for (heard, said) in heard.iter_mut().zip(said) {
+            // Latin-1: every byte is shown.
+            heard.extend(said.iter().map(|&byte| char::from(byte)));
+        }
+        let all = (0..2).all(|port| heard[port].matches('\n').count() >= expected[port].len());
+        quiet_ms = if all && !moved { quiet_ms + 1 } else { 0 };
+        if quiet_ms >= SILENCE_MS {
+            break;
+        }
+    }
+    Ok(())
+}
+
+fn compare(port: &str, expected: &[&str], said: &str) -> Result<(), String> {
+    let lines: Vec<&str> = said.split_inclusive('\n').collect();
+    let same = lines.len() == expected.len()
+        && lines.iter().zip(expected).all(|(line, expected)| {
+            line.strip_suffix("\r\n")
+                .is_some_and(|line| fits(line, expected))
+        });
+    if same {
+        return Ok(());
+    }
+    let mut message = format!("{port} said\n");
+    for line in &lines {
+        let _ = writeln!(message, "  {line:?}");
+    }
+    let _ = writeln!(message, "instead of");
+    for line in expected {
+        let _ = writeln!(message, "  {line:?}");
+    }
+    Err(message)
+}
+
+/// Whether a line is the expected one, whose `{…}` stand for anything.
+fn fits(line: &str, expected: &str) -> bool {
+    let Some((before, rest)) = expected.split_once('{') else {
+        return line == expected;
+    };
+    let Some((_, after)) = rest.split_once('}') else {
+        return line == expected;
+    };
+    line.strip_prefix(before).is_some_and(|line| {
+        (0..=line.len()).any(|at| line.is_char_boundary(at) && fits(&line[at..], after))
+    })
+}
+
+fn act(board: &mut Board, what: &str) -> Result<(), String> {
+    let words: Vec<&str> = what.split_whitespace().collect();
+    let pin = board.kind.boot_config;
+    let done = match words[..] {
+        ["wait", ms, "ms"] => {
+            let ms = ms.parse().map_err(|_| format!("{ms} ms"))?;
+            board.run_ms(ms)
+        }
+        ["pin", "low"] => {
+            board.chip.bus.pins.drive(pin, false);
+            Ok(())
+        }
+        ["pin", "released"] => {
+            board.chip.bus.pins.release(pin);
+            Ok(())
+        }
+        ["uart", "is", "at", baud] => {
+            let set: f64 = baud.parse().map_err(|_| format!("{baud} baud"))?;
+            let actual = board.chip.bus.uart[board.kind.comms_uart].baud();
+            if (actual / set - 1.0).abs() > 0.005 {
+                return Err(format!("COMMS_UART is at {actual:.0}, not {baud}"));
+            }
+            Ok(())
+        }
+        ["power", "cut"] => board
+            .carry_out(Fault::PowerCut { off_ms: OFF_MS })
+            .and_then(|()| start(board)),
+        ["starts"] => start(board),
+        ["send", "nothing", "back"] => Ok(()),
+        _ => return Err(format!("{what:?} is nothing that can be done")),
+    };
+    done.map_err(|error| error.to_string())
+}
+
+/// Through the bootloader up to the open console; what the bootloader said is taken away.
+fn start(board: &mut Board) -> Result<(), twin::board::Error> {
+    let hands_over = |board: &mut Board| {
+        let last = board.chip.resets.last();
+        let ran = board.chip.resets.len() > 1 && board.chip.bus.pio[0].enabled_at[0] == 0;
+        last.is_some_and(|reset| reset.cause == ResetCause::WatchdogForced) && ran
+    };
+    // The old image captures until the reset, the bootloader does not.
+    board.run_until(2, |board| board.chip.bus.pio[0].enabled_at[0] == 0)?;
+    board.run_until(6, hands_over)?;
+    board.comms_read();
+    board.console_read();
+    board.wait_for_capture()?;
+    board.wait_for_console()
+}
