@@ -1,4 +1,4 @@
-//! What `cargo xtask bench clients` records: real traffic in the shipped image, frames on CONSOLE as Beast, one protocol after the other on COMMS_UART at
+//! Real clients on live ports (`cargo xtask bench clients`): real traffic in the shipped image, frames on CONSOLE as Beast, one protocol after the other on COMMS_UART at
 //! 3 Mbaud; and the truth beside it, a tracker of its own fed with the same frames at the same times.
 //!
 //! | file in `target/clients` | holds |
@@ -9,10 +9,14 @@
 //! | `<protocol>.times` | `<bytes so far> <ms>`: a line whenever bytes had come |
 //! | `truth.jsonl` | an aircraft's values from `ms` on, a line whenever they change |
 //! | `stats.txt` | `AT+STATS?` at the end |
+//! | `<client>.jsonl` | what a client understood of its protocol, a line a message |
+//!
+//! `tests/clients/judge.py` compares the last with the truth.
 //!
 //! All milliseconds are of the device's uptime: since its first sample.
 
 use crate::beast::Reader;
+use crate::clients::Client;
 use mode_s::{Frame, Message};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -37,6 +41,20 @@ const CYCLES_A_MS: u64 = 120_000;
 const TAIL_MS: u64 = 60;
 /// Frames so near to a second's end that the device may count them on either side of it, ms.
 const SLACK_MS: u64 = 40;
+
+/// Each client, the part it reads, and its name.
+const CLIENTS: [(Client, &str, &str); 10] = [
+    (Client::Csbee, "csbee", "csbee"),
+    (Client::Aero, "csv", "aero"),
+    (Client::Mavlink, "mavlink1", "pymavlink-1"),
+    (Client::Mavlink, "mavlink2", "pymavlink-2"),
+    (Client::Gdl90, "gdl90", "gdl90"),
+    (Client::Asterix, "asterix", "libasterix"),
+    (Client::AsterixDecoder, "asterix", "asterix-decoder"),
+    (Client::Json, "json", "jsonschema"),
+    (Client::Dump1090Raw, "hexd", "dump1090-raw"),
+    (Client::Dump1090Beast, "console", "dump1090-beast"),
+];
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -134,6 +152,33 @@ pub fn record(folder: &Path, part_ms: u64, spacing_us: u64) -> Result<(), Failur
     std::fs::write(folder.join("frames.txt"), list)?;
     std::fs::write(folder.join("truth.jsonl"), truth(&frames))?;
     Ok(())
+}
+
+/// Lets every client read its part.
+pub fn understand(folder: &Path) {
+    for (client, part, name) in CLIENTS {
+        let stream = std::fs::read(folder.join(format!("{part}.bin"))).expect("the recording");
+        let lines: String = client
+            .read(&stream)
+            .iter()
+            .map(|message| format!("{message}\n"))
+            .collect();
+        std::fs::write(folder.join(format!("{name}.jsonl")), lines).expect("a folder for it");
+    }
+}
+
+/// Compares; says whether all agreed. `save`: where to keep the table.
+pub fn judge(folder: &Path, save: Option<&Path>) -> bool {
+    let mut judge = std::process::Command::new("python3");
+    judge
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .arg(crate::root().join("tests/clients/judge.py"))
+        .arg(folder);
+    if let Some(save) = save {
+        judge.arg(save);
+    }
+    let status = judge.status();
+    status.expect("python3 runs").success()
 }
 
 fn hex(bytes: &[u8]) -> String {
