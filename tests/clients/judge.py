@@ -12,7 +12,7 @@ import bisect
 import json
 import re
 import sys
-from collections import defaultdict
+from collections import Counter, defaultdict
 from pathlib import Path
 
 # A report waits at most so long between its making and its last byte: 2 KiB at 3 Mbaud and a turn of the loop.
@@ -48,7 +48,7 @@ def scaled(value, factor):
 
 
 def text(value):
-    return value.strip() if value else None
+    return (value or "").strip() or None
 
 
 def bit(value, number):
@@ -238,14 +238,14 @@ def asterix(message, v):
         wanted["160/GS"] = wanted["160/TA"] = None
     told = {name: message.get(name) for name in wanted}
     told["170"] = text(told["170"])
+    if told["070/MODE3A"] is not None:
+        told["070/MODE3A"] = int(str(told["070/MODE3A"]), 8)
     return wanted, told
 
 
 def asterix_second(message, v):
-    """asterix-decoder names fewer items; its Mode 3/A is text and its ground speed is rounded."""
+    """asterix-decoder names fewer items, and rounds some more."""
     wanted, told = asterix(message, v)
-    if isinstance(told["070/MODE3A"], str):
-        told["070/MODE3A"] = int(told["070/MODE3A"], 8)
     for name in ("155/BVR", "157/GVR", "230", "151/TAS", "160/GS", "160/TA"):
         if told[name] is None:
             wanted.pop(name)
@@ -381,15 +381,6 @@ def judge_aircraft(folder, truth, client, part, ends_of, is_aircraft, compare, a
     return row
 
 
-def residual(frame):
-    value = 0
-    for byte in bytes.fromhex(frame):
-        value ^= byte << 16
-        for _ in range(8):
-            value = value << 1 ^ (0x1FFF409 if value & 0x800000 else 0)
-    return value & 0xFFFFFF
-
-
 def crc(frame):
     """CRC-24 over all but the last three bytes, and these added: 0 for a frame without address in its parity."""
     data = bytes.fromhex(frame)
@@ -404,32 +395,34 @@ def crc(frame):
 
 
 def taken_by_dump1090(frames):
-    """Those that it must send on: a parity of 0, or an address that such a frame has told before."""
-    known = set()
+    """Those that it must send on: a parity of 0, or an address that such a frame has told before. Of an address that it hears once it sends nothing."""
+    known, taken, heard = set(), [], Counter()
     for frame in frames:
         format_ = int(frame[:2], 16) >> 3
         rest = crc(frame)
         if format_ in (11, 17, 18) and rest == 0:
-            known.add(int(frame[2:8], 16))
-            yield frame
+            address = int(frame[2:8], 16)
+            known.add(address)
         elif format_ in (0, 4, 5, 16, 20, 21) and rest in known:
-            yield frame
+            address = rest
+        else:
+            continue
+        heard[address] += 1
+        taken.append((address, frame))
+    return [frame for address, frame in taken if heard[address] > 1]
 
 
 def judge_frames(folder, client, sent):
     row, got = Row(client), [m["frame"] for m in understood(folder, client)]
     row.messages = len(got)
-    offered = set(sent)
-    place = 0
+    left = Counter(got)
     for frame in taken_by_dump1090(sent):
         row.fields += 1
-        try:
-            place = got.index(frame, place) + 1
-        except ValueError:
+        if left[frame] == 0:
             row.note(f"{frame} did not arrive")
-    for frame in got:
-        if frame not in offered:
-            row.note(f"{frame} was not sent")
+        left[frame] -= 1
+    for frame in (Counter(got) - Counter(sent)).elements():
+        row.note(f"{frame} was not sent")
     return row
 
 
@@ -459,6 +452,11 @@ def hex_lines(pattern):
     return read
 
 
+def json_frames(data):
+    messages = map(json.loads, data.decode("ascii").splitlines())
+    return [message["raw"][0][0] for message in messages if "raw" in message]
+
+
 def judge_order(folder, part, read, all_frames):
     """What a raw protocol told is a part of what CONSOLE told, without a gap."""
     row, told = Row(f"{part} in order"), read((folder / f"{part}.bin").read_bytes())
@@ -479,6 +477,7 @@ def judge_seconds(folder):
         "pymavlink-2": lambda m: m["message"] == "MESSAGE_INTERVAL" and m["message_id"] == 246 and m["interval_us"] == 1_000_000,
         "gdl90": lambda m: m.get("message") == "heartbeat",
         "libasterix": lambda m: m["category"] == 23,
+        "jsonschema": lambda m: "status" in m and "gnss" not in m,
     }
     for client, is_it in kinds.items():
         row.fields += 1
@@ -499,6 +498,7 @@ def main():
     rows.append(judge_frames(folder, "dump1090-beast", beast((folder / "console.bin").read_bytes())))
     rows.append(judge_order(folder, "hexd", hexd, all_frames))
     rows.append(judge_order(folder, "raw", hex_lines(r"\*([0-9A-F]{14}|[0-9A-F]{28});\((?:-?\d*),(?:\d*),[0-9A-F]*,[0-9A-F]*\)"), all_frames))
+    rows.append(judge_order(folder, "json", json_frames, all_frames))
     rows.append(judge_order(folder, "beast", beast, all_frames))
     rows.append(judge_seconds(folder))
     out = [f"{'client':<18}{'messages':>10}{'fields':>10}{'mismatches':>12}"]

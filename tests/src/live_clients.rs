@@ -73,7 +73,7 @@ struct HeardFrame {
     is_repaired: bool,
 }
 
-/// Plays `spacing_ms` a message for `part_ms` a protocol and writes all files into `folder`.
+/// Plays a message of the log every `spacing_us` for `part_ms` a protocol and writes all files into `folder`.
 pub fn record(folder: &Path, part_ms: u64, spacing_us: u64) -> Result<(), Failure> {
     let mut board = Board::power_on(&crate::image())?;
     board.wait_for_capture()?;
@@ -81,6 +81,8 @@ pub fn record(folder: &Path, part_ms: u64, spacing_us: u64) -> Result<(), Failur
     for line in [
         "AT+PROTOCOL=COMMS_UART,NONE",
         "AT+BAUDRATE=COMMS_UART,3000000",
+        // ADSB, RAW, STATUS and GNSS.
+        "AT+AERO_JSON_BITMASK=1D",
         "AT+PROTOCOL=CONSOLE,BEAST",
     ] {
         board.console_write(format!("{line}\r\n").as_bytes());
