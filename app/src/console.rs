@@ -13,6 +13,7 @@ use core::fmt::{self, Write};
 use hal::usb::PACKET;
 use reporter::{Kind, Outlet, Port};
 use settings::Port as Name;
+use settings::choices::LogLevel;
 use shell::{After, Dialect, LineReader, Listing, Out, answer};
 
 /// Bytes of the longest reply to one line, its lines together: the counters of `AT+STATS?`.
@@ -21,8 +22,8 @@ const MAX_REPLY: usize = 6 * 1024;
 const LIST_ROOM: usize = 1024;
 /// A line is answered when so many bytes have room: the counters of a long run.
 const LINE_ROOM: usize = 4608;
-/// Bytes taken from one port a turn of the loop.
-const BYTES_A_TURN: usize = 1024;
+/// Bytes taken from COMMS_UART a turn of the loop: its whole ring.
+const BYTES_A_TURN: usize = hal::uart::COMMS_RX_WORDS;
 
 /// Input of one port.
 pub struct Input {
@@ -82,6 +83,9 @@ impl Inputs {
             let mut reply = Reply::new();
             dialect.tell(&mut reply, ended);
             reply.send(receiver, port);
+            if ended.is_ok() {
+                receiver.log(LogLevel::Info, format_args!("settings are stored"));
+            }
         }
         true
     }
@@ -114,47 +118,59 @@ impl Inputs {
             }
             self.taken += 1;
             let byte = self.packet[self.taken - 1];
-            if let Some(byte) = receiver.console.heard(byte)
-                && let Some(line) = self.console.reader.feed(byte)
-            {
-                let saving = obey(line, &mut self.console.listing, receiver, Name::Console);
-                self.saving = saving.map(|dialect| (Name::Console, dialect));
-            }
+            let done = take(&mut self.console, receiver, Name::Console, byte);
+            self.note(done, Name::Console);
             moved = true;
         }
         moved
     }
 
+    /// At 3 Mbaud 300 bytes come a millisecond, most of them nobody's: what must be asked for each is asked after a line alone.
     fn serve_uart(&mut self, receiver: &mut Receiver) -> bool {
         receiver.comms.port.outlet.0.serve();
         let mut moved = false;
-        let mut left = BYTES_A_TURN;
-        while left > 0 && self.saving.is_none() && can_go_on(&self.comms, receiver, Name::CommsUart)
-        {
+        let mut may_go_on =
+            self.saving.is_none() && can_go_on(&self.comms, receiver, Name::CommsUart);
+        for _ in 0..BYTES_A_TURN {
+            if !may_go_on {
+                break;
+            }
             if go_on(&mut self.comms, receiver, Name::CommsUart) {
+                may_go_on = can_go_on(&self.comms, receiver, Name::CommsUart);
                 moved = true;
                 continue;
             }
-            // Nothing of this changes until a line ends: at 3 Mbaud a byte comes every 400 cycles.
-            while left > 0 {
-                let Some(byte) = receiver.comms.port.outlet.0.receive() else {
-                    return moved;
-                };
-                left -= 1;
-                moved = true;
-                receiver.comms_received = receiver.comms_received.wrapping_add(1);
-                if let Some(byte) = receiver.comms.heard(byte)
-                    && let Some(line) = self.comms.reader.feed(byte)
-                {
-                    let listing = &mut self.comms.listing;
-                    let saving = obey(line, listing, receiver, Name::CommsUart);
-                    self.saving = saving.map(|dialect| (Name::CommsUart, dialect));
-                    break;
-                }
+            let Some(byte) = receiver.comms.port.outlet.0.receive() else {
+                break;
+            };
+            receiver.comms_received = receiver.comms_received.wrapping_add(1);
+            moved = true;
+            let done = take(&mut self.comms, receiver, Name::CommsUart, byte);
+            if done != Taken::Byte {
+                self.note(done, Name::CommsUart);
+                may_go_on =
+                    self.saving.is_none() && can_go_on(&self.comms, receiver, Name::CommsUart);
             }
         }
         moved
     }
+
+    fn note(&mut self, done: Taken, port: Name) {
+        if let Taken::Saving(dialect) = done {
+            self.saving = Some((port, dialect));
+        }
+    }
+}
+
+/// What a byte did.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Taken {
+    /// Nothing yet.
+    Byte,
+    /// It ended a line, which was answered.
+    Line,
+    /// It ended a line that began a save, answered in this dialect when it is over.
+    Saving(Dialect),
 }
 
 /// Whether the next line may be answered now.
@@ -191,13 +207,15 @@ fn go_on(input: &mut Input, receiver: &mut Receiver, port: Name) -> bool {
     true
 }
 
-/// Answers a line; in which dialect when a save it began must be over first.
-fn obey(
-    line: shell::Input<'_>,
-    listing: &mut Option<Listing>,
-    receiver: &mut Receiver,
-    port: Name,
-) -> Option<Dialect> {
+/// Takes a byte, and answers the line it ends.
+fn take(input: &mut Input, receiver: &mut Receiver, port: Name, byte: u8) -> Taken {
+    let text = match port {
+        Name::Console => receiver.console.heard(byte),
+        Name::CommsUart => receiver.comms.heard(byte),
+    };
+    let Some(line) = text.and_then(|byte| input.reader.feed(byte)) else {
+        return Taken::Byte;
+    };
     receiver.commands = receiver.commands.wrapping_add(1);
     let place = receiver.place(port);
     let mut reply = Reply::new();
@@ -205,11 +223,11 @@ fn obey(
     reply.send(receiver, port);
     match after {
         After::Done => {}
-        After::List(list) => *listing = Some(list),
+        After::List(listing) => input.listing = Some(listing),
         After::Event(event, dialect) => receiver.take_event(event, Some((port, dialect))),
-        After::Saving(dialect) => return Some(dialect),
+        After::Saving(dialect) => return Taken::Saving(dialect),
     }
-    None
+    Taken::Line
 }
 
 /// Reply lines on their way to a port.

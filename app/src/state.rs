@@ -179,6 +179,7 @@ impl Receiver {
         };
         reply.line(format_args!("{text}"));
         reply.send(self, Port::Console);
+        self.log_start();
     }
 
     /// Whole seconds since RUN was entered.

@@ -1,4 +1,4 @@
-//! Fuzzing of what takes bytes from the air: decode, guess of Comm-B registers, tracker.
+//! Fuzzing of what takes bytes from the air: decode, guess of Comm-B registers, tracker; and of what takes them from people: [`lines`].
 //!
 //! ```text
 //!   dice ─► generator ─► Step: a frame, a Mode A/C reply, the end of a second, a place of the receiver; and when
@@ -13,6 +13,7 @@
 
 pub mod dice;
 pub mod generator;
+pub mod lines;
 pub mod reader;
 pub mod state;
 pub mod subject;

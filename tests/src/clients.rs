@@ -94,7 +94,7 @@ impl Client {
 }
 
 /// The interpreter of an environment that holds exactly the packages of its list.
-fn python((name, list): (&str, &str)) -> PathBuf {
+pub fn python((name, list): (&str, &str)) -> PathBuf {
     let list = root().join("tests/clients").join(list);
     let wanted = std::fs::read(&list).expect("the list of packages is there");
     let environment = root().join("target/peers").join(name);

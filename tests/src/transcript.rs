@@ -8,17 +8,16 @@
 //!   UART<< \x1a1C\                          bytes by their codes
 //!   -- wait 1000 ms                         time passes
 //!   -- pin low, -- pin released             BOOT/CONFIG
+//!   -- pin 18 is low                        a pin of the chip, low or high
 //!   -- uart is at 921600                    COMMS_UART's rate, within its divisor's step
 //!   -- power cut                            off and on again, up to the open console
 //!   -- starts                               waits for a start to be over, up to the open console
-//!   -- send nothing back                    the far side of both ports has said nothing unread
 //! ```
 //! `{…}` in an expected line stands for anything within the line. Each block of sends is followed by what both ports say until they are silent;
 //! between the ports the order does not matter, within one it does. What is not expected is a failure.
 
 use std::fmt::Write;
 use twin::board::Board;
-use twin::chip::bus::ResetCause;
 use twin::fault::Fault;
 
 /// Twin time a block may take until all that is expected has come, ms.
@@ -106,7 +105,8 @@ pub fn replay(board: &mut Board, text: &str) -> Result<(), String> {
             lines.next();
         }
         // Several sends in a row are one block.
-        if let (Line::Send(..), Some((_, Line::Send(..)))) = (line, lines.peek()) {
+        let nothing = expected.iter().all(Vec::is_empty);
+        if let (Line::Send(..), Some((_, Line::Send(..))), true) = (line, lines.peek(), nothing) {
             continue;
         }
         hear(board, &expected, &mut heard)?;
@@ -180,6 +180,7 @@ fn fits(line: &str, expected: &str) -> bool {
 fn act(board: &mut Board, what: &str) -> Result<(), String> {
     let words: Vec<&str> = what.split_whitespace().collect();
     let pin = board.kind.boot_config;
+    let resets = board.chip.resets.len();
     let done = match words[..] {
         ["wait", ms, "ms"] => {
             let ms = ms.parse().map_err(|_| format!("{ms} ms"))?;
@@ -193,6 +194,13 @@ fn act(board: &mut Board, what: &str) -> Result<(), String> {
             board.chip.bus.pins.release(pin);
             Ok(())
         }
+        ["pin", number, "is", level] => {
+            let number: usize = number.parse().map_err(|_| format!("pin {number}"))?;
+            if board.chip.bus.pins.level(number as u32) != (level == "high") {
+                return Err(format!("pin {number} is not {level}"));
+            }
+            Ok(())
+        }
         ["uart", "is", "at", baud] => {
             let set: f64 = baud.parse().map_err(|_| format!("{baud} baud"))?;
             let actual = board.chip.bus.uart[board.kind.comms_uart].baud();
@@ -203,24 +211,16 @@ fn act(board: &mut Board, what: &str) -> Result<(), String> {
         }
         ["power", "cut"] => board
             .carry_out(Fault::PowerCut { off_ms: OFF_MS })
-            .and_then(|()| start(board)),
-        ["starts"] => start(board),
-        ["send", "nothing", "back"] => Ok(()),
+            .and_then(|()| start(board, resets)),
+        ["starts"] => start(board, resets),
         _ => return Err(format!("{what:?} is nothing that can be done")),
     };
     done.map_err(|error| error.to_string())
 }
 
-/// Through the bootloader up to the open console; what the bootloader said is taken away.
-fn start(board: &mut Board) -> Result<(), twin::board::Error> {
-    let hands_over = |board: &mut Board| {
-        let last = board.chip.resets.last();
-        let ran = board.chip.resets.len() > 1 && board.chip.bus.pio[0].enabled_at[0] == 0;
-        last.is_some_and(|reset| reset.cause == ResetCause::WatchdogForced) && ran
-    };
-    // The old image captures until the reset, the bootloader does not.
-    board.run_until(2, |board| board.chip.bus.pio[0].enabled_at[0] == 0)?;
-    board.run_until(6, hands_over)?;
+/// Through the bootloader up to the open console; what the bootloader said is taken away. Two resets from now: into the bootloader, and from it.
+fn start(board: &mut Board, resets: usize) -> Result<(), twin::board::Error> {
+    board.run_until(6, |board| board.chip.resets.len() >= resets + 2)?;
     board.comms_read();
     board.console_read();
     board.wait_for_capture()?;

@@ -10,6 +10,8 @@ fn started() -> Board {
     board.comms_read();
     board.console_read();
     board.wait_for_console().expect("the console opens");
+    board.comms_read();
+    board.console_read();
     board
 }
 

@@ -6,6 +6,7 @@
 //! | `fw` | builds bootloader and app for the chip, checks their placement, writes target/fw/*.elf and the combined UF2 |
 //! | `test` | everything that CI checks |
 //! | `check` | format, lints, dependency edges |
+//! | `manual` | the AT reference, the completion of `squitter` and the firmware's list of licences, from the registry |
 //! | `size` | flash and RAM by crate and layer against the committed budget |
 //! | `bench` | a benchmark; its last line is `result: key=value ...` |
 //!
@@ -21,6 +22,7 @@ mod fw;
 mod golden;
 mod hot;
 mod keys;
+mod manual;
 mod peers;
 mod size;
 mod test;
@@ -36,6 +38,7 @@ usage: cargo xtask <command>
   fw                     build the firmware images and the UF2 file, into target/fw
   test                   everything that CI checks
   check                  format, lints, dependency edges
+  manual                 write docs/at-commands.md, the shell completion and the list of licences, from the registry
   size                   flash and RAM by crate and layer, against xtask/size-budget.txt
   bench <name> [--save]  run a benchmark; --save writes its table to docs/bench
 ";
@@ -48,6 +51,7 @@ fn main() -> ExitCode {
         ["fw"] => fw::run(),
         ["test"] => test::run(),
         ["check"] => check::run(),
+        ["manual"] => manual::run(),
         ["size"] => fw::run().and_then(|()| size::run()),
         ["bench", rest @ ..] => bench::run(rest),
         ["help" | "-h" | "--help"] => {

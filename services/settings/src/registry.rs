@@ -262,7 +262,7 @@ pub static ENTRIES: &[Entry] = &[
     entry(Group::System, "LED_ENABLE", &[], "<0|1>", "Status LED (0:dark, 1:shows frames and state)",
         setting(Scope::Device, &[Field::Led])),
     entry(Group::System, "LOCK", &[], "<0|1>", "Device in CONFIG mode (0:no lock, 1:lock)", switched(Info::Lock)),
-    entry(Group::System, "LOG_LEVEL", &[], "<SILENT|ERRORS|WARNINGS|INFO>",
+    entry(Group::System, "LOG_LEVEL", &[], "<0-3|name>",
         "What is logged on CONSOLE (0:silent, 1:errors, 2:warnings, 3:info)",
         setting(Scope::Device, &[Field::LogLevel])),
     entry(Group::System, "PROTOCOL", &["PROTOCOL_OUT"], "<CONSOLE|COMMS_UART>,<protocol>",

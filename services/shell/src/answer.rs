@@ -376,3 +376,7 @@ const fn described(info: Info) -> (&'static str, (i32, i32)) {
         Info::FirmwareVersion => ("String", (1, 32)),
     }
 }
+
+#[cfg(test)]
+#[path = "answer_tests.rs"]
+mod tests;

@@ -46,7 +46,7 @@ impl Listing {
         self.next += 1;
         let dialect = place.dialect();
         let rows = match self.list {
-            List::Licenses => LICENSES.len(),
+            List::Licenses => LICENSES.lines().count(),
             List::Help | List::Settings | List::Dump => ENTRIES.len(),
         };
         if index >= rows {
@@ -58,8 +58,8 @@ impl Listing {
         }
         match (self.list, dialect) {
             (List::Licenses, _) => {
-                let (name, license) = LICENSES[index];
-                out.line(format_args!("{name}: {license}"));
+                let line = LICENSES.lines().nth(index).unwrap_or("");
+                out.line(format_args!("{line}"));
             }
             (List::Help, Dialect::Adsbee) => help(&ENTRIES[index], out),
             (List::Help, Dialect::Aerobits) => grouped_help(index, device, place, out),

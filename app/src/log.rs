@@ -1,0 +1,77 @@
+//! What the device says of itself unasked, on CONSOLE: `[WARNINGS] 12 frames lost, core 0 was late`.
+//!
+//! | level | said |
+//! |---|---|
+//! | ERRORS | stored settings that could not be read |
+//! | WARNINGS | stored values that were no good; frames lost between the cores |
+//! | INFO | settings stored; the image confirmed |
+//!
+//! `LOG_LEVEL` says from which level on. A line stands between whole messages, and never on a port whose protocol is binary.
+
+use crate::console::Reply;
+use crate::receiver::Receiver;
+use crate::store::Trouble;
+use core::fmt;
+use core::sync::atomic::Ordering;
+use settings::Port;
+use settings::choices::LogLevel;
+use shell::Out;
+
+/// What was told already.
+#[derive(Default)]
+pub struct Told {
+    frames_lost: u32,
+    is_confirmed: bool,
+}
+
+impl Receiver {
+    /// A line of this level, if it is wanted.
+    pub fn log(&mut self, level: LogLevel, text: fmt::Arguments<'_>) {
+        let settings = &self.stored.settings;
+        if level.code() > settings.log_level.code() || settings.console.is_binary() {
+            return;
+        }
+        if !self.console.port.outlet.0.is_open() {
+            return;
+        }
+        let mut line = Reply::new();
+        line.line(format_args!("[{}] {text}", level.name()));
+        line.send(self, Port::Console);
+    }
+
+    /// What the start found, told to a host that has just opened CONSOLE.
+    pub fn log_start(&mut self) {
+        match self.settings_trouble {
+            // Said by the start itself.
+            None | Some(Trouble::Missing) => {}
+            Some(trouble) => self.log(
+                LogLevel::Errors,
+                format_args!("settings: {}", trouble.reason()),
+            ),
+        }
+        let refused = self.stored.refused;
+        if refused > 0 {
+            self.log(
+                LogLevel::Warnings,
+                format_args!("settings: {refused} stored values were no good"),
+            );
+        }
+    }
+
+    /// Once a second: what changed.
+    pub fn log_second(&mut self) {
+        let lost = self.shared.queue.dropped.load(Ordering::Relaxed);
+        let news = lost.wrapping_sub(self.told.frames_lost);
+        self.told.frames_lost = lost;
+        if news > 0 && self.states.is_receiving {
+            self.log(
+                LogLevel::Warnings,
+                format_args!("{news} frames lost, core 0 was late"),
+            );
+        }
+        if self.confirm.is_confirmed() && !self.told.is_confirmed {
+            self.told.is_confirmed = true;
+            self.log(LogLevel::Info, format_args!("the image is confirmed"));
+        }
+    }
+}
