@@ -8,8 +8,11 @@ use crate::info;
 use crate::receiver::Receiver;
 use crate::store::{SettingsStore, Trouble};
 use hal::uart::actual_baud;
+use mode_s::{Icao, Position};
+use settings::choices::RxSource;
 use settings::{MAX_BYTES, Settings, Stored};
 use shell::{BaudRates, Device, Failure, Identity, Out, Report, Saving};
+use tracker::RxPosition;
 
 impl Device for Receiver {
     fn settings(&self) -> &Settings {
@@ -105,6 +108,20 @@ pub fn load(store: &mut SettingsStore) -> Result<Stored, Trouble> {
         .and_then(|bytes| Stored::load(bytes).ok_or(Trouble::Missing))
 }
 
+/// Where the receiver stands, as set. The GNSS receiver's word comes with each second.
+fn rx_position(settings: &Settings) -> RxPosition {
+    match settings.rx_source {
+        RxSource::None => RxPosition::None,
+        RxSource::Fixed => RxPosition::Fixed(Position {
+            latitude: settings.rx_lat_e7,
+            longitude: settings.rx_lon_e7,
+        }),
+        RxSource::Gnss => RxPosition::Gnss(None),
+        RxSource::Lowest => RxPosition::Lowest,
+        RxSource::Icao => RxPosition::Icao(Icao(settings.rx_icao)),
+    }
+}
+
 /// Sets the parts whose settings differ; what the board lacks is refused.
 fn set_parts(
     hardware: &mut Hardware,
@@ -133,6 +150,12 @@ impl Receiver {
             // In range: the set was checked.
             let _ = self.comms.port.outlet.0.request_baud(new.comms_baud);
         }
+        if new.rx_source != old.rx_source
+            || (new.rx_lat_e7, new.rx_lon_e7, new.rx_icao)
+                != (old.rx_lat_e7, old.rx_lon_e7, old.rx_icao)
+        {
+            self.tracker.set_rx_position(rx_position(&new));
+        }
         if new.tl_hi_mv != old.tl_hi_mv {
             // The PWM's error type is empty.
             let _ = self.trigger_level.set_mv(new.tl_hi_mv);
@@ -152,6 +175,7 @@ impl Receiver {
         let _ = self.hardware.set_esp32(settings.esp32);
         let _ = self.hardware.set_rx_gain(&mut self.store, settings.rx_gain);
         self.apply_reports();
+        self.tracker.set_rx_position(rx_position(&settings));
         // In range: it was judged when it was loaded.
         let _ = self.comms.port.outlet.0.request_baud(settings.comms_baud);
     }

@@ -51,7 +51,6 @@ pub enum Field {
     RxLon = 55,
     RxHeight = 56,
     RxIcao = 57,
-    GnssConfigure = 58,
     PpsDelay = 59,
     Serial = 60,
     /// View of `Decoded` and `Raw`.
@@ -86,7 +85,7 @@ const fn switch(field: Field) -> FieldRow {
 const BAUD: (i32, i32) = (LOWEST_BAUD as i32, HIGHEST_BAUD as i32);
 
 /// Every field.
-pub static ROWS: [FieldRow; 38] = [
+pub static ROWS: [FieldRow; 37] = [
     row(Field::Decoded, Kind::Choice(Decoded::ALL)),
     row(Field::Raw, Kind::Choice(Raw::ALL)),
     row(Field::AdsbStatistics, Kind::Choice(AdsbStatistics::ALL)),
@@ -145,7 +144,6 @@ pub static ROWS: [FieldRow; 38] = [
             digits: 6,
         },
     ),
-    switch(Field::GnssConfigure),
     integer(Field::PpsDelay, -1_000_000, 1_000_000),
     row(
         Field::Serial,
@@ -215,7 +213,6 @@ impl Field {
             Field::RxLon => settings.rx_lon_e7,
             Field::RxHeight => settings.rx_height_m,
             Field::RxIcao => settings.rx_icao as i32,
-            Field::GnssConfigure => i32::from(settings.gnss_configure),
             Field::PpsDelay => settings.pps_delay_ns,
             Field::Serial => return Value::Text(settings.serial),
         })
@@ -285,7 +282,6 @@ impl Field {
             Field::RxLon => settings.rx_lon_e7 = number,
             Field::RxHeight => settings.rx_height_m = number,
             Field::RxIcao => settings.rx_icao = number as u32,
-            Field::GnssConfigure => settings.gnss_configure = number == 1,
             Field::PpsDelay => settings.pps_delay_ns = number,
             Field::Serial => return None,
         }

@@ -312,9 +312,6 @@ pub static ENTRIES: &[Entry] = &[
     entry(Group::Asterix, "ASTERIX_SIC", &[], "<0-255>", "ASTERIX system identification code",
         setting(Scope::Device, &[Field::AsterixSic])),
 
-    entry(Group::Gnss, "GNSS_CONFIGURE", &[], "<0|1>",
-        "Configures a u-blox receiver at each start (0:leaves it alone, 1:configures)",
-        What::Setting { fields: &[Field::GnssConfigure], scope: Scope::Device, restart: true, secret: false }),
     entry(Group::Gnss, "GNSS_LOG", &[], "<CONSOLE|COMMS_UART>,<0-2>", "GNSS NMEA forwarding (0:none, 1:RMC only, 2:all)",
         setting(Scope::Port, &[Field::Nmea])),
     entry(Group::Gnss, "GNSS_RX_PROTOCOL_DECODED", &[], "<CONSOLE|COMMS_UART>,<0|3>",

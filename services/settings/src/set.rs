@@ -73,8 +73,6 @@ pub struct Settings {
     pub rx_height_m: i32,
     /// The aircraft of `RX_POSITION=ICAO`.
     pub rx_icao: u32,
-    /// Whether the GNSS receiver is configured (u-blox) at each start.
-    pub gnss_configure: bool,
     /// How late the pulse per second arrives (antenna cable), nanoseconds.
     pub pps_delay_ns: i32,
     /// Serial number instead of the flash's unique id; empty: that id.
@@ -121,7 +119,6 @@ impl Settings {
         rx_lon_e7: 0,
         rx_height_m: 0,
         rx_icao: 0,
-        gnss_configure: true,
         pps_delay_ns: 0,
         serial: Text::EMPTY,
     };
