@@ -43,6 +43,8 @@ pub struct Context {
     pub demod_counters: &'static Counters,
     pub queue: Producer<'static, RawFrame>,
     pub queue_counters: &'static QueueCounters,
+    /// Microseconds this core slept.
+    pub idle_us: &'static AtomicU32,
 }
 
 /// Core 1's loop.
@@ -61,7 +63,13 @@ pub fn run(slot: &'static mut Option<Context>) -> ! {
 
 /// One block of samples.
 fn block(context: &mut Context) {
+    let asleep_from_us = hal::timer::now_us_low();
     let written = context.capture.wait();
+    let slept_us = hal::timer::now_us_low().wrapping_sub(asleep_from_us);
+    let idle_us = context.idle_us.load(Ordering::Relaxed);
+    context
+        .idle_us
+        .store(idle_us.wrapping_add(slept_us), Ordering::Relaxed);
     let Context {
         ring,
         demodulator,

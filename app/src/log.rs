@@ -4,7 +4,7 @@
 //! |---|---|
 //! | ERRORS | stored settings that could not be read |
 //! | WARNINGS | stored values that were no good; frames lost between the cores |
-//! | INFO | settings stored; the image confirmed |
+//! | INFO | settings stored; the image confirmed; messages for which a port had no room |
 //!
 //! `LOG_LEVEL` says from which level on. A line stands between whole messages, and never on a port whose protocol is binary.
 
@@ -22,6 +22,8 @@ use shell::Out;
 pub struct Told {
     frames_lost: u32,
     is_confirmed: bool,
+    /// Messages dropped by CONSOLE and COMMS_UART.
+    dropped: [u32; 2],
 }
 
 impl Receiver {
@@ -68,6 +70,21 @@ impl Receiver {
                 LogLevel::Warnings,
                 format_args!("{news} frames lost, core 0 was late"),
             );
+        }
+        let dropped = [
+            self.console.port.counters().total().dropped,
+            self.comms.port.counters().total().dropped,
+        ];
+        let before = core::mem::replace(&mut self.told.dropped, dropped);
+        for (n, port) in Port::ALL.into_iter().enumerate() {
+            let news = dropped[n].wrapping_sub(before[n]);
+            if news > 0 && self.states.is_receiving {
+                let name = port.name();
+                self.log(
+                    LogLevel::Info,
+                    format_args!("{name} had no room for {news} messages"),
+                );
+            }
         }
         if self.confirm.is_confirmed() && !self.told.is_confirmed {
             self.told.is_confirmed = true;

@@ -27,10 +27,12 @@ mod crash;
 mod hardware;
 mod identity;
 mod info;
+mod load;
 mod log;
 mod outlets;
 mod receiver;
 mod state;
+mod station;
 mod stats;
 #[allow(dead_code, reason = "the self-test calls the rest")]
 mod store;
@@ -38,7 +40,7 @@ mod store;
 use boot_contract::hand_over::{Cause, HandOver};
 use confirm::{Confirm, Due};
 use console::Inputs;
-use core::sync::atomic::Ordering;
+use core::sync::atomic::{AtomicU32, Ordering};
 use core1::{Context, QUEUE_SLOTS, QueueCounters};
 use crash::Crash;
 use demod::{Counters, Demodulator, RawFrame, SampleRing};
@@ -51,10 +53,13 @@ use hal::take_once::TakeOnce;
 use hal::{Parts, sleep, timer, watchdog};
 use hardware::Hardware;
 use heapless::spsc::Queue;
+use load::Load;
 use receiver::{AIRCRAFT, Receiver, SharedCounters};
+use report::Gnss;
 use reporter::Reporter;
 use settings::Stored;
 use state::States;
+use station::Station;
 use stats::DecodeCounters;
 use store::SettingsStore;
 use tracker::Tracker;
@@ -76,6 +81,7 @@ static SHARED: SharedCounters = SharedCounters {
     capture: CaptureCounters::new(),
     demod: Counters::new(),
     queue: QueueCounters::new(),
+    core1_idle_us: AtomicU32::new(0),
 };
 
 #[hal::entry]
@@ -118,6 +124,7 @@ fn start() -> Option<core::convert::Infallible> {
         demod_counters: &SHARED.demod,
         queue: producer,
         queue_counters: &SHARED.queue,
+        idle_us: &SHARED.core1_idle_us,
     });
     let mut wakes = parts.core1.launch(context, core1::run);
 
@@ -128,6 +135,11 @@ fn start() -> Option<core::convert::Infallible> {
     let mut receiver = Receiver {
         console: Reporter::new(settings::Port::Console, outlets::Console(console)),
         comms: Reporter::new(settings::Port::CommsUart, outlets::Comms(parts.comms_uart)),
+        station: Station {
+            unique_id: u64::from_be_bytes(parts.unique_id),
+            gnss: Gnss::default(),
+        },
+        load: Load::new(&SHARED.core1_idle_us),
         queue: consumer,
         tracker: TRACKER.take()?,
         shared: &SHARED,
@@ -195,6 +207,7 @@ fn start() -> Option<core::convert::Infallible> {
                     || receiver.comms.port.outlet.0.has_received()
                     || timer::now_us() >= look_us
             });
+            receiver.load.slept(timer::now_us() - now_us);
         }
     }
 }

@@ -13,13 +13,15 @@ use crate::console::Inputs;
 use crate::core1::QueueCounters;
 use crate::crash::{Crash, Life};
 use crate::hardware::Hardware;
+use crate::load::Load;
 use crate::log::Told;
 use crate::outlets;
 use crate::state::States;
+use crate::station::Station;
 use crate::stats::{DecodeCounters, Stats};
 use crate::store::{SettingsStore, Trouble};
 use boot_contract::hand_over::{Cause, HandOver};
-use core::sync::atomic::Ordering;
+use core::sync::atomic::{AtomicU32, Ordering};
 use demod::RawFrame;
 use drivers::pulse_capture::CaptureCounters;
 use drivers::trigger_level::TriggerLevel;
@@ -28,7 +30,7 @@ use hal::{boot, timer, watchdog};
 use heapless::spsc::Consumer;
 use mode_s::Message;
 use report::{Bits, FrameReport, FrameTimes, Moment, Statistics};
-use reporter::{Reporter, Second};
+use reporter::{Context, Reporter};
 use settings::Stored;
 use tracker::{Heard, Tracker};
 
@@ -49,6 +51,8 @@ pub struct SharedCounters {
     pub capture: CaptureCounters,
     pub demod: demod::Counters,
     pub queue: QueueCounters,
+    /// Core 1's sleep, microseconds.
+    pub core1_idle_us: AtomicU32,
 }
 
 /// Everything core 0 works with.
@@ -58,6 +62,10 @@ pub struct Receiver {
     pub states: States,
     /// The settings in force, and the keys of a newer version that are stored beside them.
     pub stored: Stored,
+    /// What reports tell beside frames and aircraft.
+    pub station: Station,
+    /// Loads of the cores.
+    pub load: Load,
     pub trigger_level: TriggerLevel<TriggerLevelPwm>,
     pub queue: Consumer<'static, RawFrame>,
     pub tracker: &'static mut Tracker<AIRCRAFT>,
@@ -109,6 +117,19 @@ pub enum Leave {
     UsbDrive,
 }
 
+/// What messages tell beside frames and aircraft. Its fields alone are borrowed, so that the ports can be told.
+macro_rules! context {
+    ($receiver:ident, $now:ident) => {{
+        let context: Context<'_> = $receiver.station.context(
+            &$receiver.version,
+            &$receiver.serial,
+            &$receiver.stored.settings,
+            $now,
+        );
+        context
+    }};
+}
+
 impl Receiver {
     /// Uptime, microseconds.
     fn uptime_us(&self) -> u64 {
@@ -117,11 +138,20 @@ impl Receiver {
 
     /// Uptime, milliseconds.
     pub fn now_ms(&self) -> u64 {
-        self.uptime_us() / 1000
+        // From the second on in 32 bits, for the reason that `second_ends_us` gives.
+        let began_us = self.second_ends_us - 1_000_000;
+        let into_second_us = self.uptime_us().saturating_sub(began_us) as u32;
+        u64::from(self.second) * 1000 + u64::from(into_second_us / 1000)
+    }
+
+    /// Now, on the clocks that reports name; the time of day is not known yet.
+    fn now(&self) -> Moment {
+        Moment::at(self.now_ms())
     }
 
     /// Takes frames from the queue. Returns whether more wait; `heard` is called for each.
     pub fn frames(&mut self, mut heard: impl FnMut()) -> bool {
+        let now = self.now();
         for _ in 0..FRAMES_A_TURN {
             let Some(raw_frame) = self.queue.dequeue() else {
                 return false;
@@ -147,8 +177,9 @@ impl Receiver {
                 quality_cdb: None,
                 times: FrameTimes::at(raw_frame.arrival),
             };
-            self.console.frame(&report, true);
-            self.comms.frame(&report, true);
+            let context = context!(self, now);
+            self.console.frame(&report, true, &context);
+            self.comms.frame(&report, true, &context);
         }
         self.queue.ready()
     }
@@ -165,14 +196,15 @@ impl Receiver {
             }
             return true;
         }
-        let moment = Moment::at(self.now_ms());
-        let console = self.console.turn(self.tracker, &moment);
-        let comms = self.comms.turn(self.tracker, &moment);
+        let now = self.now();
+        let context = context!(self, now);
+        let console = self.console.turn(self.tracker, &context);
+        let comms = self.comms.turn(self.tracker, &context);
         console | comms
     }
 
     fn begin_second(&mut self) {
-        let now_ms = self.now_ms();
+        let now_ms = self.uptime_us() / 1000;
         self.second = (now_ms / 1000) as u32;
         self.second_ends_us = (u64::from(self.second) + 1) * 1_000_000;
         self.tracker.begin_second(now_ms);
@@ -186,15 +218,15 @@ impl Receiver {
             demodulations: Some(demodulated.wrapping_sub(self.last.0)),
             mode_s_frames: Some(self.decode.offered.wrapping_sub(self.last.1)),
             uptime_s: self.run_s(),
+            load_permille: self.load.second(timer::now_us()),
+            aircraft: Some(self.tracker.len() as u32),
             ..Statistics::default()
         };
         self.last = (demodulated, self.decode.offered);
-        let second = Second {
-            moment: Moment::at(self.now_ms()),
-            statistics: &statistics,
-        };
-        self.console.second(self.tracker, &second);
-        self.comms.second(self.tracker, &second);
+        let now = self.now();
+        let context = context!(self, now);
+        self.console.second(self.tracker, &context, &statistics);
+        self.comms.second(self.tracker, &context, &statistics);
     }
 
     /// Serves both ports and answers what was typed. Returns whether anything moved.

@@ -115,6 +115,8 @@ pub struct Uart<const TX: usize, const RX: usize> {
     sending: usize,
     /// Characters taken from the receive ring, modulo [`ROUND`].
     taken: u32,
+    /// Characters known to have come in, likewise: up to here they may be taken without looking again.
+    known: u32,
     received_lost: u32,
 }
 
@@ -139,6 +141,7 @@ impl<const TX: usize, const RX: usize> Uart<TX, RX> {
             requested: None,
             sending: 0,
             taken: 0,
+            known: 0,
             received_lost: 0,
         };
         port.arm_receive();
@@ -239,6 +242,8 @@ impl<const TX: usize, const RX: usize> Uart<TX, RX> {
     /// Goes on sending; carries out a requested rate when the line has fallen silent. To be called in the loop.
     pub fn serve(&mut self) {
         self.go_on_sending();
+        // What is known grows old between two turns: the ring may have been lapped.
+        self.known = self.taken;
         let Some(baud) = self.requested else { return };
         if self.to_send.is_empty() && self.registers().uartfr().read().busy().bit_is_clear() {
             self.set_divisor(baud);
@@ -337,21 +342,9 @@ impl<const TX: usize, const RX: usize> Uart<TX, RX> {
     /// The oldest byte received. Damaged characters (framing, parity, break) are passed over and counted.
     pub fn receive(&mut self) -> Option<u8> {
         loop {
-            let came_in = self.came_in();
-            let waiting = came_in.wrapping_sub(self.taken) % ROUND;
-            if waiting == 0 {
+            if self.known == self.taken && !self.look() {
                 return None;
             }
-            if waiting as usize > RX {
-                // Lapped: what is left of the older half may be overwritten while it is read.
-                let skipped = waiting - RX as u32 / 2;
-                self.taken = self.taken.wrapping_add(skipped) % ROUND;
-                self.received_lost = self.received_lost.wrapping_add(skipped);
-            }
-            // The count moves when a transfer is issued. A read through the same bridge ends after the channel's own, and the channel's write
-            // follows within two cycles.
-            let _ = self.registers().uartfr().read();
-            fence(Ordering::Acquire);
             let word = self.received.0[self.taken as usize & (RX - 1)].load(Ordering::Relaxed);
             self.taken = (self.taken + 1) % ROUND;
             let lost = u32::from(word & mark::OVERRUN != 0);
@@ -361,6 +354,26 @@ impl<const TX: usize, const RX: usize> Uart<TX, RX> {
                 return Some(word as u8);
             }
         }
+    }
+
+    /// Looks at what came in. Returns whether anything did.
+    fn look(&mut self) -> bool {
+        self.known = self.came_in();
+        let waiting = self.known.wrapping_sub(self.taken) % ROUND;
+        if waiting == 0 {
+            return false;
+        }
+        if waiting as usize > RX {
+            // Lapped: what is left of the older half may be overwritten while it is read.
+            let skipped = waiting - RX as u32 / 2;
+            self.taken = self.taken.wrapping_add(skipped) % ROUND;
+            self.received_lost = self.received_lost.wrapping_add(skipped);
+        }
+        // The count moves when a transfer is issued. A read through the same bridge ends after the channel's own, and the channel's write
+        // follows within two cycles.
+        let _ = self.registers().uartfr().read();
+        fence(Ordering::Acquire);
+        true
     }
 
     /// Characters lost on the way in since the start: damaged, overrun, or not fetched in time.

@@ -3,7 +3,7 @@
 //! ```text
 //!   send(message) ──▶ ring 16 KiB ─┐
 //!                                  ├─▶ 64-byte packets ─▶ host       no host that listens (DTR), no room: refused whole
-//!   reply(message) ─▶ ring 4 KiB ──┘
+//!   reply(message) ─▶ ring 8 KiB ──┘
 //!   host ─▶ 64-byte packet ─▶ poll(|byte| ..)
 //! ```
 //! Each message lies behind its length, so that replies can go first and still never stand inside another message: a reply waits for the rest of the

@@ -15,6 +15,9 @@ EDITIONS = {21: Cat_021_2_1, 23: Cat_023_1_2}
 
 
 def element(variation):
+    if not hasattr(variation, "content"):
+        # Its unit depends on another subitem (150: IAS or Mach): as it stands.
+        return variation.as_uint()
     content = variation.content if not callable(variation.content) else variation.content()
     if hasattr(content, "as_quantity"):
         return content.as_quantity()

@@ -4,6 +4,7 @@ pub mod beast;
 pub mod clients;
 pub mod cpu_peer;
 pub mod image_peer;
+pub mod live_clients;
 pub mod logs;
 pub mod long;
 pub mod power_cuts;

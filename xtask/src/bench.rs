@@ -7,7 +7,7 @@ use std::process::Command;
 use crate::{fw, golden, peers, workspace};
 
 /// The benchmarks and what they measure.
-const BENCHES: [(&str, &str); 13] = [
+const BENCHES: [(&str, &str); 15] = [
     (
         "twin",
         "emulated MHz and share of real time: one core, two cores, two cores with capture and DMA, the image on real traffic",
@@ -43,6 +43,14 @@ const BENCHES: [(&str, &str); 13] = [
     (
         "decode",
         "frames a second from bytes to fields beside rs1090 and adsb_deku; cycles a frame in the twin; bytes an aircraft",
+    ),
+    (
+        "reports",
+        "bytes and cycles a report, aircraft a second at three rates, latency of raw frames",
+    ),
+    (
+        "clients",
+        "every protocol of the image on real traffic, read by the real clients and compared field by field; --part-ms N, --spacing-us N",
     ),
     (
         "power-cuts",

@@ -160,8 +160,8 @@ fn place(record: &mut Target, aircraft: &Aircraft, moment: &Moment) {
         record.item(14, &time);
     }
     if let Some(AltitudeFt(feet)) = aircraft.gnss_altitude(now_ms) {
-        // 6.25 ft are a quarter of 25.
-        record.item(16, &sixteen(feet * 4 / 25));
+        // 6.25 ft are a quarter of 25, rounded.
+        record.item(16, &sixteen((feet * 4 + 12).div_euclid(25)));
     }
 }
 
@@ -229,8 +229,8 @@ fn status(record: &mut Target, aircraft: &Aircraft, now_ms: u64) {
 fn motion(record: &mut Target, aircraft: &Aircraft, moment: &Moment) {
     let now_ms = moment.now_ms;
     if let Some(rate) = aircraft.vertical_rate(now_ms) {
-        // 6.25 ft/min are a quarter of 25; fifteen bits.
-        let [high, low] = sixteen(i32::from(rate.feet_per_minute) * 4 / 25);
+        // 6.25 ft/min are a quarter of 25, rounded; fifteen bits.
+        let [high, low] = sixteen((i32::from(rate.feet_per_minute) * 4 + 12).div_euclid(25));
         let frn = if rate.is_barometric { 24 } else { 25 };
         record.item(frn, &[high & 0x7F, low]);
     }

@@ -32,4 +32,4 @@ mod schedule;
 
 pub use input::{BeastInput, Fed};
 pub use port::{Counts, Kind, Outlet, Port, PortCounters};
-pub use reporter::{Reporter, Second};
+pub use reporter::{Context, Reporter};

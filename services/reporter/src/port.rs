@@ -20,7 +20,7 @@ pub enum Kind {
     Frame,
     /// An aircraft, or what belongs to its protocol.
     Aircraft,
-    /// Statistics of either sort.
+    /// Statistics of either sort, and what a protocol says once a second.
     Statistics,
     /// NMEA or a fix of the GNSS receiver.
     Gnss,

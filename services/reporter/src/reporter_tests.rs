@@ -2,7 +2,7 @@
 
 use super::*;
 use mode_s::{Frame, Message};
-use report::{Moment, Statistics};
+use report::{FrameTimes, Gnss, Moment, Statistics};
 use settings::Settings;
 use settings::choices::{Decoded, Reporting};
 use std::collections::BTreeMap;
@@ -64,6 +64,29 @@ fn all_call(address: u32) -> Frame {
     Frame::from_bytes(&bytes).unwrap()
 }
 
+fn context(now_ms: u64) -> Context<'static> {
+    const GNSS: Gnss = Gnss {
+        has_fix: false,
+        position: None,
+        ellipsoid_cm: None,
+        sea_level_cm: None,
+        track: None,
+        speed_centiknots: None,
+        climb_cm_s: None,
+        latitude_error_cm: None,
+        longitude_error_cm: None,
+        height_error_cm: None,
+    };
+    Context {
+        moment: Moment::at(now_ms),
+        second_began: FrameTimes::at(now_ms * 120_000),
+        gnss: &GNSS,
+        source: "ID-1",
+        firmware: "1.0.0.0 (Jan 1 2026)",
+        unique_id: 1,
+    }
+}
+
 struct Sky {
     tracker: std::boxed::Box<Tracker<400>>,
     reporter: Reporter<Pipe>,
@@ -96,15 +119,13 @@ impl Sky {
     /// A second of the port in steps of 10 ms; what each brought is in the result.
     fn second(&mut self, bytes_a_second: usize) -> Vec<Vec<u32>> {
         self.tracker.each_second(self.now_ms);
-        let second = Second {
-            moment: Moment::at(self.now_ms),
-            statistics: &Statistics::default(),
-        };
-        self.reporter.second(&mut self.tracker, &second);
+        let statistics = Statistics::default();
+        self.reporter
+            .second(&mut self.tracker, &context(self.now_ms), &statistics);
         let mut steps = Vec::new();
         for _ in 0..100 {
-            let moment = Moment::at(self.now_ms);
-            while self.reporter.turn(&mut self.tracker, &moment) {}
+            let context = context(self.now_ms);
+            while self.reporter.turn(&mut self.tracker, &context) {}
             self.reporter.port.outlet.drain(bytes_a_second / 100);
             self.now_ms += 10;
             steps.push(self.told());
@@ -235,7 +256,7 @@ fn frames_leave_room_for_the_rest() {
     let frame = all_call(5);
     for _ in 0..1_000 {
         sky.reporter
-            .frame(&report::FrameReport::of_frame(&frame, 0), true);
+            .frame(&report::FrameReport::of_frame(&frame, 0), true, &context(0));
     }
     let counts = sky.reporter.port.counters().of(Kind::Frame);
     assert!(counts.dropped > 0);
@@ -257,12 +278,12 @@ fn what_was_not_accepted_goes_out_when_asked_for() {
     sky.reporter.apply(&sky.settings);
     let frame = all_call(5);
     let report = report::FrameReport::of_frame(&frame, 0);
-    sky.reporter.frame(&report, false);
+    sky.reporter.frame(&report, false, &context(0));
     assert_eq!(sky.reporter.port.outlet.waiting.len(), 0);
     assert!(!sky.reporter.wants_refused());
     sky.settings.raw_filter = settings::choices::RawFilter::All;
     sky.reporter.apply(&sky.settings);
-    sky.reporter.frame(&report, false);
+    sky.reporter.frame(&report, false, &context(0));
     assert_eq!(sky.reporter.port.outlet.waiting.len(), 18);
 }
 
@@ -276,7 +297,7 @@ fn a_beast_client_asks_for_mode_ac() {
         ..report::FrameReport::of_frame(&all_call(5), 0)
     };
     let sent = |sky: &mut Sky| {
-        sky.reporter.frame(&reply, true);
+        sky.reporter.frame(&reply, true, &context(0));
         core::mem::take(&mut sky.reporter.port.outlet.waiting).len()
     };
     assert_eq!(sent(&mut sky), 0);

@@ -1,0 +1,37 @@
+//! What reports tell beside frames and aircraft: who the device is, and where.
+
+use report::{FrameTimes, Gnss, Moment};
+use reporter::Context;
+use settings::Settings;
+
+/// Ticks (120 MHz) a millisecond.
+const TICKS_PER_MS: u64 = hal::timer::TICKS_PER_US * 1000;
+
+/// What of it is kept here.
+pub struct Station {
+    /// The flash's unique id.
+    pub unique_id: u64,
+    /// The GNSS receiver's fix.
+    pub gnss: Gnss,
+}
+
+impl Station {
+    /// All of it at a moment: `version` of the image, `serial` unless the settings have another.
+    pub fn context<'a>(
+        &'a self,
+        version: &'a str,
+        serial: &'a str,
+        settings: &'a Settings,
+        moment: Moment,
+    ) -> Context<'a> {
+        let set = settings.serial.as_str();
+        Context {
+            moment,
+            second_began: FrameTimes::at(moment.now_ms / 1000 * 1000 * TICKS_PER_MS),
+            gnss: &self.gnss,
+            source: if set.is_empty() { serial } else { set },
+            firmware: version,
+            unique_id: self.unique_id,
+        }
+    }
+}
