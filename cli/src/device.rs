@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, value_parser};
 use twin::board::Board;
+use twin::board::kind::{ADSBEE_1090, Kind};
 
 use crate::Failure;
 use crate::instruments;
 use crate::profile::Functions;
 
-/// Where `cargo xtask fw` puts the image, from the checkout's root.
-const IMAGE: &str = "target/fw/squitter-adsbee_1090.uf2";
+/// Where `cargo xtask fw` puts the images, from the checkout's root.
+const IMAGES: &str = "target/fw";
 /// How long a command may take to be answered, in milliseconds.
 const ANSWER_MS: u64 = 1_000;
 /// Silence that ends the answer to a query, in milliseconds.
@@ -23,7 +24,7 @@ pub fn image_argument() -> Arg {
         .value_name("UF2")
         .value_parser(value_parser!(PathBuf))
         .help(format!(
-            "Firmware image to run [default: {IMAGE} of this checkout, built by `cargo xtask fw`]"
+            "Firmware image to run [default: the board's in {IMAGES} of this checkout, built by `cargo xtask fw`]"
         ))
 }
 
@@ -39,7 +40,7 @@ pub fn profile_argument() -> Arg {
 pub fn image(matches: &ArgMatches) -> PathBuf {
     match matches.get_one::<PathBuf>("image") {
         Some(path) => path.clone(),
-        None => default_image(),
+        None => default_image(board_name(matches)),
     }
 }
 
@@ -79,14 +80,22 @@ pub fn start(matches: &ArgMatches) -> Result<Board, Failure> {
     Ok(board)
 }
 
-/// The image of the checkout this program was built in, or of the present folder.
-fn default_image() -> PathBuf {
-    let here = PathBuf::from(IMAGE);
+/// The board of `--board`, where the command has it.
+fn board_name(matches: &ArgMatches) -> &'static str {
+    let name = matches.try_get_one::<String>("board").ok().flatten();
+    name.and_then(|name| Kind::named(name))
+        .map_or(ADSBEE_1090.name, |kind| kind.name)
+}
+
+/// The board's image of the checkout this program was built in, or of the present folder.
+fn default_image(board: &str) -> PathBuf {
+    let image = format!("{IMAGES}/squitter-{board}.uf2");
+    let here = PathBuf::from(&image);
     if here.exists() {
         return here;
     }
     let manifest = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    manifest.parent().map_or(here, |root| root.join(IMAGE))
+    manifest.parent().map_or(here, |root| root.join(image))
 }
 
 /// Sends a command and waits for `OK`; an `ERROR` is a failure. Everything the console said meanwhile is returned.

@@ -1,15 +1,19 @@
-//! Power cuts through updates, on the host: the bootloader's own code over a flash that tears at every operation, with the log at each place where
-//! it changes sectors.
+//! Power cuts on the host. `--update`: through updates, the bootloader's own code over a flash that tears at every operation, with the log at each place
+//! where it changes sectors; `--twice`: the power fails again during each recovery. `--settings`: through saves of settings, the firmware's store over an
+//! EEPROM and a flash that tear at every byte of every operation; beside it `sequential-storage`; `--step N`: each N-th size.
 //!
-//! `--update` (the only kind so far); `--seeds N`: ways in which each operation tears; `--twice`: the power fails again during each recovery.
+//! `--seeds N`: ways in which each operation tears.
 
 use std::process::ExitCode;
 
 use tests::Bench;
+use tests::power_cuts::settings::{Found, campaign, keeper, keeper::Keeper, memory::Kind};
 use tests::power_cuts::{Outcome, Script};
 
 /// Ways in which each operation tears, unless told.
 const SEEDS: u64 = 10;
+/// The longest set of settings of the firmware, bytes.
+const LONGEST: usize = tests::settings_store::MAX;
 /// Cuts that MCUboot's simulator makes in its longest test, before operations alone (as its developers publish it).
 const MCUBOOT: u64 = 17_752;
 
@@ -17,10 +21,14 @@ fn main() -> ExitCode {
     if !tests::is_bench() {
         return ExitCode::SUCCESS;
     }
-    if !std::env::args().any(|argument| argument == "--update") {
-        eprintln!("power-cuts: say which: --update");
+    let run = if tests::flag("--update") {
+        update
+    } else if tests::flag("--settings") {
+        settings
+    } else {
+        eprintln!("power-cuts: say which: --update or --settings");
         return ExitCode::FAILURE;
-    }
+    };
     match run() {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
@@ -31,7 +39,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn run() -> std::io::Result<bool> {
+fn update() -> std::io::Result<bool> {
     let seeds = tests::number_option("--seeds", SEEDS);
     let twice = std::env::args().any(|argument| argument == "--twice");
     let script = Script::new();
@@ -66,4 +74,72 @@ fn run() -> std::io::Result<bool> {
     ));
     bench.finish(&all.result())?;
     Ok(all.bricked.is_empty())
+}
+
+fn settings() -> std::io::Result<bool> {
+    let seeds = tests::number_option("--seeds", SEEDS);
+    let step = tests::number_option("--step", 1);
+    let mut bench = Bench::new(
+        "power-cuts-settings",
+        "memory,keeper,size,cuts,second_cuts,new,lost",
+    );
+    bench.line(&format!(
+        "{:<8}{:<20}{:>7}{:>9}{:>13}{:>9}{:>7}",
+        "memory", "kept by", "sizes", "cuts", "second cuts", "new", "lost"
+    ));
+    let mut ours = Found::default();
+    for keeper in [Keeper::Banks, Keeper::Sequential] {
+        // The other one is there for comparison: fewer sizes.
+        let step = if keeper == Keeper::Banks {
+            step
+        } else {
+            step.max(27)
+        };
+        for kind in Kind::ALL {
+            let sizes = (0..=LONGEST).step_by(step).chain([keeper::MAX]);
+            let mut all = Found::default();
+            let mut count = 0;
+            for size in sizes {
+                let found = campaign(keeper, kind, size, seeds);
+                let (kind, keeper) = (kind.name(), keeper.name());
+                let Found {
+                    cuts,
+                    second_cuts,
+                    new,
+                    lost,
+                    ..
+                } = found;
+                bench.row(format!(
+                    "{kind},{keeper},{size},{cuts},{second_cuts},{new},{lost}"
+                ));
+                all.add(found);
+                count += 1;
+            }
+            bench.line(&format!(
+                "{:<8}{:<20}{count:>7}{:>9}{:>13}{:>9}{:>7}",
+                kind.name(),
+                keeper.name(),
+                all.cuts,
+                all.second_cuts,
+                all.new,
+                all.lost
+            ));
+            for example in &all.examples {
+                bench.line(&format!("  lost: {example}"));
+            }
+            if keeper == Keeper::Banks {
+                ours.add(all);
+            }
+        }
+    }
+    let Found {
+        cuts,
+        second_cuts,
+        lost,
+        ..
+    } = ours;
+    bench.finish(&format!(
+        "cuts={cuts} second_cuts={second_cuts} lost={lost}"
+    ))?;
+    Ok(lost == 0)
 }

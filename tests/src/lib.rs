@@ -24,10 +24,15 @@ pub fn root() -> PathBuf {
 
 /// The combined image that `cargo xtask fw` writes. Its absence is a failed test, never a skipped one.
 pub fn image() -> PathBuf {
-    let path = root().join("target/fw/squitter-adsbee_1090.uf2");
+    image_of("adsbee_1090")
+}
+
+/// The same for another board: `cargo xtask fw --all`.
+pub fn image_of(board: &str) -> PathBuf {
+    let path = root().join(format!("target/fw/squitter-{board}.uf2"));
     assert!(
         path.exists(),
-        "{} is missing; build it with `cargo xtask fw` (`cargo xtask test` does)",
+        "{} is missing; build it with `cargo xtask fw --all` (`cargo xtask test` does)",
         path.display()
     );
     path

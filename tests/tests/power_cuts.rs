@@ -1,5 +1,7 @@
-//! Power cuts through updates, on the host: the bootloader's own code over a flash that tears.
+//! Power cuts on the host: through updates, by the bootloader's own code over a flash that tears; through saves of settings, by the firmware's store over
+//! an EEPROM and a flash that tear.
 
+use tests::power_cuts::settings::{self, Found, keeper::Keeper, memory::Kind};
 use tests::power_cuts::{Outcome, Script, log_lengths};
 
 /// Cuts a run of CI makes at least.
@@ -25,4 +27,24 @@ fn no_second_cut_bricks_the_device() {
     println!("{}", outcome.result());
     assert_eq!(outcome.bricked, Vec::<String>::new());
     assert!(outcome.second_cuts > 1000, "{}", outcome.second_cuts);
+}
+
+/// Sizes of settings in the short form, a step apart that is no whole number of pages; and the longest.
+fn sizes() -> impl Iterator<Item = usize> {
+    (0..512).step_by(27).chain([512, settings::keeper::MAX])
+}
+
+#[test]
+fn no_cut_of_a_save_loses_or_mixes_settings() {
+    for kind in Kind::ALL {
+        let mut all = Found::default();
+        for size in sizes() {
+            all.add(settings::campaign(Keeper::Banks, kind, size, 16));
+        }
+        println!("{}: {} cuts, {} new", kind.name(), all.cuts, all.new);
+        assert_eq!(all.examples, Vec::<String>::new());
+        assert_eq!(all.second_cuts, all.cuts);
+        assert!(all.cuts >= LEAST_CUTS / 2, "{} cuts", all.cuts);
+        assert!(all.new > 0 && all.new < all.cuts / 10, "{} new", all.new);
+    }
 }

@@ -54,7 +54,7 @@ const BENCHES: [(&str, &str); 15] = [
     ),
     (
         "power-cuts",
-        "--update: the power fails at every flash operation of updates and inside it, on the host; --seeds N, --twice",
+        "on the host; --update: at every flash operation of updates and inside it, --twice; --settings: at every byte of saves, --step N; --seeds N",
     ),
     (
         "cpu-peers",

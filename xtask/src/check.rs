@@ -34,6 +34,12 @@ pub fn run() -> Result<(), String> {
         clippy.args(["-p", name]);
     }
     workspace::run(clippy.args(["--", "-D", "warnings"]))?;
+    for board in ["adsbee_1090u", "adsbee_1090_e"] {
+        let mut clippy = cargo();
+        clippy.args(["clippy", "--quiet", "--target", "thumbv6m-none-eabi"]);
+        clippy.args(["--profile", "firmware", "-p", "hal", "--features", board]);
+        workspace::run(clippy.args(["--", "-D", "warnings"]))?;
+    }
     println!("check: dependency edges");
     edges::check()?;
     println!("check: all good");

@@ -5,82 +5,133 @@
 //!                                                                                                  └─ update package
 //! ```
 //! The UF2 file holds bootloader and slot A, for a first flashing by BOOTSEL; the package (`.sqt`) holds both links, for an update.
+//!
+//! `--board NAME` builds for that board, `--all` for each; a board is a feature of `hal`, so that the builds of all stay beside each other. The files are
+//! `squitter-NAME.uf2` and `.sqt`; the ELFs of `adsbee_1090` lie in target/fw itself, those of another board in a folder of its name.
 
 use crate::{converter, hot, keys, thumb, workspace};
+use boot_contract::BOARDS;
 use boot_contract::boot_log::SlotName;
 use boot_contract::flash_map::{BOOTLOADER_END, IMAGE_MAX};
 use boot_contract::header::Date;
 use release::package::{self, Package, Release};
 use release::{elf, flash_image, uf2};
+use std::path::Path;
 use std::process::Command;
 
-/// Name of the combined file.
-const UF2: &str = "squitter-adsbee_1090.uf2";
-/// Name of the update package.
-const PACKAGE: &str = "squitter-adsbee_1090.sqt";
 /// Raised when an older image must not be installed again: it holds a hole that this one closes.
 const SECURITY_COUNTER: u32 = 1;
 /// SRAM in all, bytes.
 const SRAM: u32 = 264 * 1024;
 
-/// Builds, checks and writes the images.
+/// Builds for the board that is meant where nobody names another.
 pub fn run() -> Result<(), String> {
+    board(BOARDS[0])
+}
+
+/// The command, with what followed it.
+pub fn command(arguments: &[&str]) -> Result<(), String> {
+    match arguments {
+        [] => run(),
+        ["--all"] => BOARDS.into_iter().try_for_each(board),
+        ["--board", name] => board(named(name)?),
+        _ => Err("usage: cargo xtask fw [--board NAME | --all]".to_string()),
+    }
+}
+
+/// The other boards.
+pub fn others() -> Result<(), String> {
+    BOARDS[1..].iter().copied().try_for_each(board)
+}
+
+/// The text of a header's name.
+fn text(board: &[u8; 16]) -> &str {
+    let end = board.iter().position(|&byte| byte == 0).unwrap_or(16);
+    // The names of the contract are ASCII.
+    str::from_utf8(&board[..end]).unwrap_or("")
+}
+
+fn named(name: &str) -> Result<[u8; 16], String> {
+    let found = BOARDS.into_iter().find(|board| text(board) == name);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = BOARDS.iter().map(text).collect();
+        format!("no board is called {name}; there are {}", names.join(", "))
+    })
+}
+
+/// Builds, checks and writes the images of a board.
+fn board(id: [u8; 16]) -> Result<(), String> {
+    let name = text(&id);
     let signer = keys::signing()?;
     let public = keys::accepted(&signer)?;
     let images = workspace::images()?;
-    std::fs::create_dir_all(&images).map_err(|error| format!("{}: {error}", images.display()))?;
+    let elfs = if id == BOARDS[0] {
+        images.clone()
+    } else {
+        images.join(name)
+    };
+    std::fs::create_dir_all(&elfs).map_err(|error| format!("{}: {error}", elfs.display()))?;
     // A refused image must not leave older files beside newer ELFs.
-    let (uf2, sqt) = (images.join(UF2), images.join(PACKAGE));
+    let (uf2_name, sqt_name) = (
+        format!("squitter-{name}.uf2"),
+        format!("squitter-{name}.sqt"),
+    );
+    let (uf2, sqt) = (images.join(&uf2_name), images.join(&sqt_name));
     for old in [&uf2, &sqt] {
         if old.exists() {
             std::fs::remove_file(old).map_err(|error| format!("{}: {error}", old.display()))?;
         }
     }
-    let mut linked = Vec::new();
-    for (name, package, variable) in [
-        (
-            "bootloader",
-            "bootloader",
-            ("SQUITTER_PUBLIC_KEYS", public.as_str()),
-        ),
-        ("app", "app", ("SQUITTER_SLOT", "A")),
-        ("app-b", "app", ("SQUITTER_SLOT", "B")),
-    ] {
-        let built = thumb::build(&[package], &[variable])?;
-        let to = images.join(format!("{name}.elf"));
-        let from = built.join(package);
-        std::fs::copy(&from, &to)
-            .map_err(|error| format!("{} to {}: {error}", from.display(), to.display()))?;
-        linked.push(elf::read(&to)?);
-    }
-    let [bootloader, app, app_b] = linked.as_slice() else {
-        return Err("three images were asked for".to_string());
-    };
-    let hot = hot::check(app)?;
-    hot::check(app_b)?;
+    println!("board: {name}");
+    let [bootloader, app, app_b] = link(&id, &elfs, &public)?;
+    let hot = hot::check(&app)?;
+    hot::check(&app_b)?;
     let release = Release {
+        board: id,
         version: version()?,
         counter: SECURITY_COUNTER,
         date: date()?,
     };
-    let slot_a = package::link(SlotName::A, app, &release)?;
-    let slot_b = package::link(SlotName::B, app_b, &release)?;
+    let slot_a = package::link(SlotName::A, &app, &release)?;
+    let slot_b = package::link(SlotName::B, &app_b, &release)?;
     let signed = Package([slot_a, slot_b]).sign(&signer)?;
-    let parts = flash_image::compose(bootloader, &signed.0[0])?;
+    let parts = flash_image::compose(&bootloader, &signed.0[0])?;
     uf2::write(&converter::program()?, &uf2, bootloader.entry, &parts)?;
     std::fs::write(&sqt, signed.to_bytes())
         .map_err(|error| format!("{}: {error}", sqt.display()))?;
 
-    print_sizes("bootloader", bootloader, BOOTLOADER_END);
-    print_sizes("app", app, IMAGE_MAX);
+    print_sizes("bootloader", &bootloader, BOOTLOADER_END);
+    print_sizes("app", &app, IMAGE_MAX);
     println!(
         "core 1: {} bytes in {} functions run from SRAM; {} words lead to flash, panics all",
         hot.bytes, hot.functions, hot.panic_words
     );
     println!(
-        "wrote target/fw/{UF2}, read back and equal to the flash image, and target/fw/{PACKAGE}"
+        "wrote target/fw/{uf2_name}, read back and equal to the flash image, and target/fw/{sqt_name}"
     );
     Ok(())
+}
+
+/// Links bootloader and both links of the app for a board; their ELFs go to `elfs`.
+fn link(id: &[u8; 16], elfs: &Path, public: &str) -> Result<[elf::Image; 3], String> {
+    let feature = format!("hal/{}", text(id));
+    let features = if *id == BOARDS[0] {
+        vec![]
+    } else {
+        vec![feature.as_str()]
+    };
+    let image = |file: &str, package: &str, variable: (&str, &str)| {
+        let built = thumb::build(&[package], &features, &[variable])?;
+        let (from, to) = (built.join(package), elfs.join(format!("{file}.elf")));
+        std::fs::copy(&from, &to)
+            .map_err(|error| format!("{} to {}: {error}", from.display(), to.display()))?;
+        elf::read(&to)
+    };
+    Ok([
+        image("bootloader", "bootloader", ("SQUITTER_PUBLIC_KEYS", public))?,
+        image("app", "app", ("SQUITTER_SLOT", "A"))?,
+        image("app-b", "app", ("SQUITTER_SLOT", "B"))?,
+    ])
 }
 
 /// Flash and SRAM of an image.

@@ -3,7 +3,7 @@
 //! | command | does |
 //! |---|---|
 //! | `demo` | builds all, boots the image in the twin, plays real traffic, shows the device's console |
-//! | `fw` | builds bootloader and app for the chip, checks their placement, writes target/fw/*.elf and the combined UF2 |
+//! | `fw` | builds bootloader and app for the chip, checks their placement, writes target/fw/*.elf and the combined UF2; `--board`, `--all` |
 //! | `test` | everything that CI checks |
 //! | `check` | format, lints, dependency edges |
 //! | `manual` | the AT reference, the completion of `squitter` and the firmware's list of licences, from the registry |
@@ -35,7 +35,7 @@ const USAGE: &str = "\
 usage: cargo xtask <command>
 
   demo [options] [FILE]  build all, boot the image in the twin, play real traffic (--help lists the options)
-  fw                     build the firmware images and the UF2 file, into target/fw
+  fw [--board B|--all]   build the firmware images and the UF2 file, into target/fw; without a board adsbee_1090
   test                   everything that CI checks
   check                  format, lints, dependency edges
   manual                 write docs/at-commands.md, the shell completion and the list of licences, from the registry
@@ -48,7 +48,7 @@ fn main() -> ExitCode {
     let names: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let result = match names.as_slice() {
         ["demo", rest @ ..] => demo::run(rest),
-        ["fw"] => fw::run(),
+        ["fw", rest @ ..] => fw::command(rest),
         ["test"] => test::run(),
         ["check"] => check::run(),
         ["manual"] => manual::run(),

@@ -49,6 +49,8 @@ pub fn run() -> Result<(), String> {
     check::run()?;
     println!("test: firmware images");
     fw::run()?;
+    println!("test: firmware images of the other boards");
+    fw::others()?;
     println!("test: sizes");
     size::run()?;
     println!("test: all host crates, and the images in the twin");

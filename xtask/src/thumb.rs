@@ -17,8 +17,12 @@ enum Toolchain {
     Debian,
 }
 
-/// Builds the packages with these environment variables; returns the folder their binaries are in.
-pub fn build(packages: &[&str], environment: &[(&str, &str)]) -> Result<PathBuf, String> {
+/// Builds the packages with these features and environment variables; returns the folder their binaries are in.
+pub fn build(
+    packages: &[&str],
+    features: &[&str],
+    environment: &[(&str, &str)],
+) -> Result<PathBuf, String> {
     let target = workspace::target()?;
     let mut command = match toolchain()? {
         Toolchain::Rustup => {
@@ -40,6 +44,9 @@ pub fn build(packages: &[&str], environment: &[(&str, &str)]) -> Result<PathBuf,
     }
     for package in packages {
         command.args(["--package", package]);
+    }
+    for feature in features {
+        command.args(["--features", feature]);
     }
     command
         .args(["--target", TARGET, "--profile", PROFILE])

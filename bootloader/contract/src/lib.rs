@@ -25,6 +25,13 @@ pub mod log_store;
 /// The board an image is built for, as its header names it. 16 bytes, zero-padded ASCII.
 pub const BOARD_ADSBEE_1090: [u8; 16] = *b"adsbee_1090\0\0\0\0\0";
 
+/// All boards there are images for, by the name a header has, zero-padded. The first is the one meant where nobody names another.
+pub const BOARDS: [[u8; 16]; 3] = [
+    BOARD_ADSBEE_1090,
+    *b"adsbee_1090u\0\0\0\0",
+    *b"adsbee_1090_e\0\0\0",
+];
+
 /// CRC-32/ISO-HDLC (the one of zip and Ethernet) with a 1 KiB table.
 const CRC32: crc::Crc<u32, crc::Table<1>> =
     crc::Crc::<u32, crc::Table<1>>::new(&crc::CRC_32_ISO_HDLC);

@@ -10,9 +10,9 @@ use crate::elf::Image;
 use crate::flash_image::contiguous;
 use crate::keys::Public;
 use boot_contract::boot_log::SlotName;
+use boot_contract::crc32;
 use boot_contract::flash_map::IMAGE_MAX;
 use boot_contract::header::{self, Date, Header, SIGNATURE};
-use boot_contract::{BOARD_ADSBEE_1090, crc32};
 use boot_core::keys::{Keys, key_id};
 use boot_core::package::{MAGIC, PREFIX, headers, image_at, length};
 use boot_core::slot::{ImageCheck, Refusal, Terms};
@@ -21,6 +21,8 @@ use sha2::{Digest, Sha256};
 
 /// What a header says beside the image.
 pub struct Release {
+    /// The board, as a header names it.
+    pub board: [u8; 16],
     pub version: [u8; 4],
     /// Security counter.
     pub counter: u32,
@@ -45,7 +47,7 @@ pub fn link(slot: SlotName, app: &Image, release: &Release) -> Result<Linked, St
     let name = format!("the app for slot {}", slot.letter());
     let image = contiguous(&name, app, link_address, link_address + IMAGE_MAX)?;
     let fields = Header {
-        board: BOARD_ADSBEE_1090,
+        board: release.board,
         link_address,
         image_length: image.len() as u32,
         version: release.version,
@@ -124,12 +126,12 @@ impl Package {
         decoded.map_err(|cause| Refusal::Header(cause).reason().to_string())
     }
 
-    /// Checks everything that a device of `adsbee_1090` that knows this key alone would, in both slots: board, link, lengths, signature, hash,
-    /// vectors; and that both links are of one release.
+    /// Checks everything that a device of the board that it names, and that knows this key alone, would, in both slots: link, lengths, signature,
+    /// hash, vectors; and that both links are of one release for one board.
     pub fn verify(&self, public: &Public) -> Result<(), String> {
         let keys = [*public];
         let terms = Terms {
-            board: BOARD_ADSBEE_1090,
+            board: self.header(SlotName::A)?.board,
             keys: Keys(&keys),
             floor: 0,
         };
@@ -159,6 +161,7 @@ mod tests {
     use crate::keys;
 
     const RELEASE: Release = Release {
+        board: boot_contract::BOARDS[0],
         version: [1, 2, 3, 4],
         counter: 5,
         date: Date {

@@ -10,6 +10,7 @@
 pub mod device;
 pub mod flash;
 pub mod release;
+pub mod settings;
 
 use boot_contract::boot_log::{Record, SlotName};
 use boot_core::keys::PUBLIC_KEY;

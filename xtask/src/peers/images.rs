@@ -24,7 +24,7 @@ pub fn command(root: &Path) -> Result<Command, String> {
 
 /// Builds the images; the folder they are in.
 fn build() -> Result<PathBuf, String> {
-    let built = thumb::build(&["peer-images"], &[])?;
+    let built = thumb::build(&["peer-images"], &[], &[])?;
     let folder = workspace::target()?.join("peers/images");
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     for name in IMAGES {
