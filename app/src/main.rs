@@ -31,6 +31,7 @@ mod load;
 mod log;
 mod outlets;
 mod receiver;
+mod self_test;
 mod state;
 mod station;
 mod stats;
@@ -50,7 +51,7 @@ use drivers::trigger_level::{self, TriggerLevel};
 use hal::kept::{End, LastWords};
 use hal::parts::TRIGGER_LEVEL_PERIOD;
 use hal::take_once::TakeOnce;
-use hal::{Parts, sleep, timer, watchdog};
+use hal::{Parts, sleep, stack, timer, watchdog};
 use hardware::Hardware;
 use heapless::spsc::Queue;
 use load::Load;
@@ -103,6 +104,7 @@ fn start() -> Option<core::convert::Infallible> {
 
     let mut parts = Parts::take()?;
     parts.watchdog.start(WATCHDOG_US);
+    stack::mark_core0();
     let mut led = Led::new(parts.led);
     let mut hardware = Hardware::new(parts.bias_tee, parts.esp32_enable, parts.boot_config);
     let mut store = SettingsStore::new(parts.i2c, parts.settings_flash);

@@ -25,6 +25,12 @@ static STACK: Stack = Stack(UnsafeCell::new([0; STACK_BYTES]));
 static CONTEXT: AtomicPtr<()> = AtomicPtr::new(core::ptr::null_mut());
 static ENTRY: AtomicPtr<()> = AtomicPtr::new(core::ptr::null_mut());
 
+/// First address of core 1's stack and the one behind it.
+pub(crate) fn stack() -> (u32, u32) {
+    let from = STACK.0.get() as u32;
+    (from, from + STACK_BYTES as u32)
+}
+
 /// The right to start core 1; exists once.
 pub struct Core1 {
     pub(crate) psm: pac::PSM,
@@ -51,6 +57,9 @@ impl Core1 {
         // Into its ROM loop, whatever it did before.
         self.psm.frce_off().modify(|_, w| w.proc1().set_bit());
         while self.psm.frce_off().read().proc1().bit_is_clear() {}
+        let (from, to) = stack();
+        // SAFETY: core 1's stack, and core 1 is held in reset.
+        unsafe { crate::stack::mark(from, to) };
         self.psm.frce_off().modify(|_, w| w.proc1().clear_bit());
 
         // SAFETY: reading VTOR has no effect; core 1 shares core 0's table (it takes nothing but faults).

@@ -14,6 +14,8 @@
 //! | [`usb`] | the console's CDC ACM port | USBCTRL |
 //! | [`watchdog`] | feeding, forced reset, scratch 2/3, reset source | WATCHDOG, PSM.WDSEL, VREG_AND_CHIP_RESET |
 //! | [`core1`] | starting the second core; waking the first | PSM, SIO FIFO |
+//! | [`clocks`] | what the clocks really run at | CLOCKS.FC0 |
+//! | [`stack`] | how deep the stacks have been | – |
 //! | [`sleep`] | WFI without a lost wake-up | NVIC |
 //! | [`boot`] | flash as bytes, jump into an image | XIP, VTOR |
 //! | [`flash`] | erase, program, the part's unique id | XIP_SSI and IO_QSPI, beside the ROM |
@@ -27,6 +29,7 @@
 pub mod board;
 pub mod boot;
 pub mod byte_ring;
+pub mod clocks;
 pub mod core1;
 pub mod dma_ring;
 pub mod flash;
@@ -36,6 +39,7 @@ pub mod kept;
 pub mod parts;
 pub mod pio_sampler;
 pub mod sleep;
+pub mod stack;
 pub mod take_once;
 pub mod timer;
 pub mod uart;

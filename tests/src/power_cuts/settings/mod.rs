@@ -6,6 +6,7 @@
 //! ```
 //! A blob counts as lost when what is loaded is neither, or nothing, or when a save after the cut fails or does not load.
 
+pub mod in_twin;
 pub mod keeper;
 pub mod memory;
 

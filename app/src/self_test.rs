@@ -1,0 +1,215 @@
+//! The self-test: each part checked where it can be, with what was found.
+//!
+//! | check | does | passes when |
+//! |---|---|---|
+//! | `FLASH` | reads the unique id; the CRC-32 of the image that runs | the id is one, the CRC is the header's |
+//! | `EEPROM` | reads a page that is the self-test's own; writes it where it does not hold its pattern, and reads it back | it holds the pattern |
+//! | `SETTINGS` | loads the settings | the memory answers; whether there are any is told |
+//! | `RX_GAIN` | sets another gain, reads it back, sets the one before | both read back |
+//! | `CAPTURE` | counts blocks of samples for 12.8 ms; only while reception is on | 250 000 words a second within 2 % |
+//! | `CLOCK_SYS`, `CLOCK_USB` | the frequency counter, against the crystal | 120 000 and 48 000 kHz within 0.1 % |
+//! | `STACK_0`, `STACK_1` | bytes of each core's stack that were never used | enough is left |
+//!
+//! A check of a part that the board does not have is absent. What has no line is not tested: the analogue way (levels, detector), GNSS and the ESP32 are
+//! other parts' matter. Takes 60 ms, in which core 0 does nothing else; core 1 and the ports' DMA go on.
+
+use crate::hardware::Refused;
+use crate::receiver::Receiver;
+use crate::store::{SCRATCH_PAGE_AT, Trouble};
+use core::fmt::{self, Display, Write};
+use core::sync::atomic::Ordering;
+use drivers::eeprom::{Eeprom, EepromError, PAGE};
+use embedded_hal::i2c::I2c;
+use hal::clocks::{Clock, measured_khz};
+use hal::{boot, stack, timer};
+
+/// Checks of the board with the most parts.
+const MOST: usize = 12;
+/// Bytes of a value.
+const VALUE: usize = 64;
+/// The capture is watched for so many blocks of 32 words, 128 us each.
+const BLOCKS: u32 = 100;
+const BLOCK_US: u32 = 128;
+/// Bytes of stack that shall never have been used.
+const STACK_RESERVE: u32 = 1024;
+/// What the self-test's page holds: each byte another, so that a line that sticks shows.
+const PATTERN: [u8; PAGE] = {
+    let mut pattern = [0; PAGE];
+    let mut n = 0;
+    while n < PAGE {
+        pattern[n] = (n as u8).wrapping_mul(0x35) ^ 0xA5;
+        n += 1;
+    }
+    pattern
+};
+
+/// A check that was made.
+pub struct Check {
+    pub name: &'static str,
+    pub passed: bool,
+    value: heapless::String<VALUE>,
+}
+
+impl Display for Check {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verdict = if self.passed { "PASS" } else { "FAIL" };
+        write!(out, "{} {verdict} {}", self.name, self.value)
+    }
+}
+
+/// All checks of this board.
+pub type Checks = heapless::Vec<Check, MOST>;
+
+/// Makes them. `receiving` says whether capture is meant to run.
+pub fn run(receiver: &mut Receiver, receiving: bool) -> Checks {
+    let mut checks = Checks::new();
+    flash(receiver, &mut checks);
+    if let Some(eeprom) = receiver.store.eeprom() {
+        let found = scratch_page(eeprom);
+        let (Ok(text) | Err(text)) = found;
+        add(&mut checks, "EEPROM", found.is_ok(), format_args!("{text}"));
+    }
+    settings(receiver, &mut checks);
+    rx_gain(receiver, &mut checks);
+    if receiving {
+        capture(receiver, &mut checks);
+    }
+    clock(&mut checks, "CLOCK_SYS", Clock::System, 120_000);
+    clock(&mut checks, "CLOCK_USB", Clock::Usb, 48_000);
+    for (name, unused) in [
+        ("STACK_0", stack::core0_unused()),
+        ("STACK_1", stack::core1_unused()),
+    ] {
+        let enough = unused >= STACK_RESERVE;
+        add(
+            &mut checks,
+            name,
+            enough,
+            format_args!("{unused} bytes never used"),
+        );
+    }
+    checks
+}
+
+fn add(checks: &mut Checks, name: &'static str, passed: bool, value: fmt::Arguments<'_>) {
+    let mut check = Check {
+        name,
+        passed,
+        value: heapless::String::new(),
+    };
+    // Values are shorter than the place for them, and there is a place for each check of the board with the most.
+    let _ = check.value.write_fmt(value);
+    let _ = checks.push(check);
+}
+
+fn flash(receiver: &Receiver, checks: &mut Checks) {
+    let id = u64::from_be_bytes(receiver.unique_id);
+    let has_id = id != 0 && id != u64::MAX;
+    let running = receiver.confirm.slot().zip(receiver.confirm.header());
+    let Some((slot, header)) = running else {
+        return add(checks, "FLASH", false, format_args!("{id:016X}, no header"));
+    };
+    let crc = boot_contract::crc32(boot::flash(slot.slot().image, header.image_length));
+    add(
+        checks,
+        "FLASH",
+        has_id && crc == header.image_crc,
+        format_args!("id {id:016X}, image CRC {crc:08X}"),
+    );
+}
+
+/// The page of the self-test: its pattern, written if it is not there. A device that works is written once in its life.
+fn scratch_page<B: I2c>(eeprom: &mut Eeprom<B>) -> Result<&'static str, &'static str> {
+    if scratch_reads_back(eeprom).map_err(EepromError::reason)? {
+        return Ok("read back");
+    }
+    write_scratch(eeprom).map_err(EepromError::reason)?;
+    if scratch_reads_back(eeprom).map_err(EepromError::reason)? {
+        Ok("written and read back")
+    } else {
+        Err("does not hold what is written")
+    }
+}
+
+fn scratch_reads_back<B: I2c>(eeprom: &mut Eeprom<B>) -> Result<bool, EepromError> {
+    let mut page = [0; PAGE];
+    eeprom.read(SCRATCH_PAGE_AT, &mut page)?;
+    Ok(page == PATTERN)
+}
+
+fn write_scratch<B: I2c>(eeprom: &mut Eeprom<B>) -> Result<(), EepromError> {
+    eeprom.write(SCRATCH_PAGE_AT, &PATTERN)?;
+    while eeprom.is_busy()? {}
+    Ok(())
+}
+
+fn settings(receiver: &mut Receiver, checks: &mut Checks) {
+    let place = receiver.store.place();
+    let loaded = receiver.store.load().map(<[u8]>::len);
+    let (number, _) = receiver.store.counts();
+    match loaded {
+        Ok(length) => add(
+            checks,
+            "SETTINGS",
+            true,
+            format_args!("{length} bytes in {place}, save {number}"),
+        ),
+        Err(Trouble::Missing) => add(
+            checks,
+            "SETTINGS",
+            true,
+            format_args!("none saved in {place}"),
+        ),
+        Err(trouble) => add(
+            checks,
+            "SETTINGS",
+            false,
+            format_args!("{}", trouble.reason()),
+        ),
+    }
+}
+
+fn rx_gain(receiver: &mut Receiver, checks: &mut Checks) {
+    let (hardware, store) = (&mut receiver.hardware, &mut receiver.store);
+    let before = match hardware.rx_gain(store) {
+        Err(Refused::Absent(_)) => return,
+        before => before,
+    };
+    let other = |gain: u8| if gain == 50 { 51 } else { 50 };
+    let tried = before.and_then(|before| {
+        hardware.set_rx_gain(store, other(before))?;
+        let read = hardware.rx_gain(store)?;
+        hardware.set_rx_gain(store, before)?;
+        Ok(read == other(before) && hardware.rx_gain(store)? == before)
+    });
+    match (before, tried) {
+        (Ok(gain), Ok(passed)) => add(checks, "RX_GAIN", passed, format_args!("{gain}")),
+        (_, Err(cause)) | (Err(cause), _) => {
+            add(checks, "RX_GAIN", false, format_args!("{}", cause.reason()));
+        }
+    }
+}
+
+fn capture(receiver: &Receiver, checks: &mut Checks) {
+    let words = &receiver.shared.capture.words;
+    let (start_us, before) = (timer::now_us(), words.load(Ordering::Relaxed));
+    while timer::now_us() - start_us < u64::from(BLOCKS * BLOCK_US) {}
+    let counted = words.load(Ordering::Relaxed).wrapping_sub(before);
+    let elapsed_us = (timer::now_us() - start_us) as u32;
+    let expected = elapsed_us / 4;
+    let passed = counted.abs_diff(expected) <= expected / 50;
+    let rate = counted.saturating_mul(1000) / elapsed_us * 1000;
+    add(checks, "CAPTURE", passed, format_args!("{rate} words/s"));
+}
+
+fn clock(checks: &mut Checks, name: &'static str, clock: Clock, expected_khz: u32) {
+    match measured_khz(clock) {
+        Some(khz) => add(
+            checks,
+            name,
+            khz.abs_diff(expected_khz) <= expected_khz / 1000,
+            format_args!("{khz} kHz"),
+        ),
+        None => add(checks, name, false, format_args!("does not run")),
+    }
+}
