@@ -55,19 +55,10 @@ fn each_board_starts_its_image_and_receives() {
             "{}: {stats}",
             kind.name
         );
+        let level = board.chip.bus.trigger_level_mv(0).expect("it has one");
+        assert!((level - 1300.0).abs() < 2.0, "{}: {level} mV", kind.name);
         let info = ask(&mut board, "AT+INFO");
         let device = format!("Device: {}\r\n", kind.name);
         assert!(info.contains(&device), "{info}");
-    }
-}
-
-#[test]
-fn the_comparator_has_its_threshold_on_each_board() {
-    for kind in KINDS {
-        let mut board = with_image(kind, kind.name);
-        board.wait_for_capture().expect("capture starts");
-        board.run_ms(150).expect("the chip runs");
-        let level = board.chip.bus.trigger_level_mv(0).expect("it has one");
-        assert!((level - 1300.0).abs() < 2.0, "{}: {level} mV", kind.name);
     }
 }
