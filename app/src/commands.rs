@@ -6,6 +6,7 @@
 use crate::hardware::{Hardware, Refused};
 use crate::info;
 use crate::receiver::Receiver;
+use crate::self_test;
 use crate::store::{SettingsStore, Trouble};
 use hal::uart::actual_baud;
 use mode_s::{Icao, Position};
@@ -96,7 +97,16 @@ impl Device for Receiver {
                 info::tell(self, out);
                 Ok(())
             }
-            Report::Test | Report::Gnss => Err("not built yet"),
+            Report::Test => {
+                let is_receiving = self.stored.settings.rx_enable && self.states.is_receiving;
+                let checks = self_test::run(self, is_receiving);
+                for check in &checks {
+                    out.line(format_args!("{check}"));
+                }
+                let failed = checks.iter().find(|check| !check.passed);
+                failed.map_or(Ok(()), |check| Err(check.name))
+            }
+            Report::Gnss => Err("not built yet"),
         }
     }
 }
@@ -156,6 +166,7 @@ impl Receiver {
         {
             self.tracker.set_rx_position(rx_position(&new));
         }
+        self.hardware.set_trigger_level_low(new.tl_lo_mv);
         if new.tl_hi_mv != old.tl_hi_mv {
             // The PWM's error type is empty.
             let _ = self.trigger_level.set_mv(new.tl_hi_mv);
@@ -174,6 +185,7 @@ impl Receiver {
         let _ = self.hardware.set_bias_tee(settings.bias_tee);
         let _ = self.hardware.set_esp32(settings.esp32);
         let _ = self.hardware.set_rx_gain(&mut self.store, settings.rx_gain);
+        self.hardware.set_trigger_level_low(settings.tl_lo_mv);
         self.apply_reports();
         self.tracker.set_rx_position(rx_position(&settings));
         // In range: it was judged when it was loaded.

@@ -5,8 +5,9 @@
 use crate::store::SettingsStore;
 use drivers::rx_gain::RxGain;
 use drivers::switch::{On, Switch};
+use drivers::trigger_level::TriggerLevel;
 use embedded_hal::digital::InputPin;
-use hal::board::{self, BiasTee, BootConfig, Esp32Enable};
+use hal::board::{self, BiasTee, BootConfig, Esp32Enable, TriggerLevelLowPwm};
 
 /// Why a part was not set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +33,7 @@ pub struct Hardware {
     bias_tee: Option<Switch<BiasTee>>,
     esp32: Option<Switch<Esp32Enable>>,
     rx_gain: Option<RxGain>,
+    trigger_level_low: Option<TriggerLevel<TriggerLevelLowPwm>>,
     boot_config: BootConfig,
 }
 
@@ -40,13 +42,24 @@ impl Hardware {
     pub fn new(
         bias_tee: Option<BiasTee>,
         esp32: Option<Esp32Enable>,
+        trigger_level_low: Option<TriggerLevelLowPwm>,
         boot_config: BootConfig,
     ) -> Self {
         Self {
             bias_tee: bias_tee.map(|pin| Switch::new(pin, On::Low)),
             esp32: esp32.map(|pin| Switch::new(pin, On::High)),
             rx_gain: board::HAS_POTENTIOMETER.then(|| RxGain::new(board::POTENTIOMETER_ADDRESS)),
+            // The PWM's error type is empty.
+            trigger_level_low: trigger_level_low.and_then(|pwm| TriggerLevel::new(pwm).ok()),
             boot_config,
+        }
+    }
+
+    /// Sets the second trigger level; a board with one level has nothing to set.
+    pub fn set_trigger_level_low(&mut self, millivolts: u16) {
+        if let Some(level) = &mut self.trigger_level_low {
+            // The PWM's error type is empty.
+            let _ = level.set_mv(millivolts);
         }
     }
 

@@ -35,7 +35,6 @@ mod self_test;
 mod state;
 mod station;
 mod stats;
-#[allow(dead_code, reason = "the self-test calls the rest")]
 mod store;
 
 use boot_contract::hand_over::{Cause, HandOver};
@@ -106,7 +105,12 @@ fn start() -> Option<core::convert::Infallible> {
     parts.watchdog.start(WATCHDOG_US);
     stack::mark_core0();
     let mut led = Led::new(parts.led);
-    let mut hardware = Hardware::new(parts.bias_tee, parts.esp32_enable, parts.boot_config);
+    let mut hardware = Hardware::new(
+        parts.bias_tee,
+        parts.esp32_enable,
+        parts.trigger_level_low,
+        parts.boot_config,
+    );
     let mut store = SettingsStore::new(parts.i2c, parts.settings_flash);
     let loaded = commands::load(&mut store);
     let settings_trouble = loaded.err();
