@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use boot_contract::boot_log::SlotName;
 use boot_contract::header::Date;
 use clap::{Arg, ArgMatches, Command, value_parser};
-use release::package::{Package, Release, link};
+use release::package::{Package, Release, board_named, link};
 use release::{elf, keys};
 
 use crate::Failure;
@@ -76,6 +76,11 @@ pub fn pack() -> Command {
         .about("Put both links of a firmware into one update package")
         .arg(file("slot-a", "target/fw/app.elf").help("The app linked for slot A"))
         .arg(file("slot-b", "target/fw/app-b.elf").help("The app linked for slot B"))
+        .arg(
+            option("board", "NAME")
+                .default_value("adsbee_1090")
+                .help("The board it is for; the ELFs of another than adsbee_1090 lie in target/fw/NAME"),
+        )
         .arg(option("release", "A.B.C.D").required(true).help("Version of the release"))
         .arg(option("date", "YYYY-MM-DD").required(true).help("Day of its commit"))
         .arg(
@@ -96,6 +101,7 @@ pub fn pack() -> Command {
 pub fn run_pack(matches: &ArgMatches) -> Result<(), Failure> {
     let text = |name: &str| matches.get_one::<String>(name).map_or("", String::as_str);
     let release = Release {
+        board: board_named(text("board"))?,
         version: version(text("release"))?,
         date: date(text("date"))?,
         counter: matches.get_one("counter").copied().unwrap_or(1),

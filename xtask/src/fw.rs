@@ -34,7 +34,7 @@ pub fn command(arguments: &[&str]) -> Result<(), String> {
     match arguments {
         [] => run(),
         ["--all"] => BOARDS.into_iter().try_for_each(board),
-        ["--board", name] => board(named(name)?),
+        ["--board", name] => board(package::board_named(name)?),
         _ => Err("usage: cargo xtask fw [--board NAME | --all]".to_string()),
     }
 }
@@ -44,24 +44,9 @@ pub fn others() -> Result<(), String> {
     BOARDS[1..].iter().copied().try_for_each(board)
 }
 
-/// The text of a header's name.
-fn text(board: &[u8; 16]) -> &str {
-    let end = board.iter().position(|&byte| byte == 0).unwrap_or(16);
-    // The names of the contract are ASCII.
-    str::from_utf8(&board[..end]).unwrap_or("")
-}
-
-fn named(name: &str) -> Result<[u8; 16], String> {
-    let found = BOARDS.into_iter().find(|board| text(board) == name);
-    found.ok_or_else(|| {
-        let names: Vec<&str> = BOARDS.iter().map(text).collect();
-        format!("no board is called {name}; there are {}", names.join(", "))
-    })
-}
-
 /// Builds, checks and writes the images of a board.
 fn board(id: [u8; 16]) -> Result<(), String> {
-    let name = text(&id);
+    let name = package::board_text(&id);
     let signer = keys::signing()?;
     let public = keys::accepted(&signer)?;
     let images = workspace::images()?;
@@ -114,7 +99,7 @@ fn board(id: [u8; 16]) -> Result<(), String> {
 
 /// Links bootloader and both links of the app for a board; their ELFs go to `elfs`.
 fn link(id: &[u8; 16], elfs: &Path, public: &str) -> Result<[elf::Image; 3], String> {
-    let feature = format!("hal/{}", text(id));
+    let feature = format!("hal/{}", package::board_text(id));
     let features = if *id == BOARDS[0] {
         vec![]
     } else {

@@ -10,9 +10,9 @@ use crate::elf::Image;
 use crate::flash_image::contiguous;
 use crate::keys::Public;
 use boot_contract::boot_log::SlotName;
-use boot_contract::crc32;
 use boot_contract::flash_map::IMAGE_MAX;
 use boot_contract::header::{self, Date, Header, SIGNATURE};
+use boot_contract::{BOARDS, crc32};
 use boot_core::keys::{Keys, key_id};
 use boot_core::package::{MAGIC, PREFIX, headers, image_at, length};
 use boot_core::slot::{ImageCheck, Refusal, Terms};
@@ -28,6 +28,22 @@ pub struct Release {
     pub counter: u32,
     /// Of the commit.
     pub date: Date,
+}
+
+/// A board's name as text.
+pub fn board_text(board: &[u8; 16]) -> &str {
+    let end = board.iter().position(|&byte| byte == 0).unwrap_or(16);
+    // The names of the contract are ASCII.
+    str::from_utf8(&board[..end]).unwrap_or("")
+}
+
+/// The board of this name, as a header has it.
+pub fn board_named(name: &str) -> Result<[u8; 16], String> {
+    let found = BOARDS.into_iter().find(|board| board_text(board) == name);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = BOARDS.iter().map(board_text).collect();
+        format!("no board is called {name}; there are {}", names.join(", "))
+    })
 }
 
 /// A linked image and its header.
@@ -170,6 +186,13 @@ mod tests {
             day: 25,
         },
     };
+
+    #[test]
+    fn boards_are_found_by_name_and_others_named() {
+        assert_eq!(board_named("adsbee_1090u"), Ok(BOARDS[1]));
+        let reason = board_named("pico").unwrap_err();
+        assert!(reason.contains("adsbee_1090_e"), "{reason}");
+    }
 
     /// Good vectors and a kilobyte behind them.
     fn app(slot: SlotName) -> Image {
