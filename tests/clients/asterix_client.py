@@ -14,11 +14,13 @@ from asterix.generated import Cat_021_2_1, Cat_023_1_2
 EDITIONS = {21: Cat_021_2_1, 23: Cat_023_1_2}
 
 
-def element(variation):
-    if not hasattr(variation, "content"):
-        # Its unit depends on another subitem (150: IAS or Mach): as it stands.
-        return variation.as_uint()
-    content = variation.content if not callable(variation.content) else variation.content()
+def element(variation, told):
+    if hasattr(variation, "content"):
+        content = variation.content
+    else:
+        # What it means depends on another subitem, which stands before it.
+        depends_on = ("/".join(path) for path in variation.cv_rule.cv_depends_on)
+        content = variation.rule.content(tuple(told[name] for name in depends_on))
     if hasattr(content, "as_quantity"):
         return content.as_quantity()
     if hasattr(content, "as_string"):
@@ -29,7 +31,7 @@ def element(variation):
 def flatten(name, variation, into):
     kind = type(variation).__mro__[1].__name__
     if kind == "Element":
-        into[name] = element(variation)
+        into[name] = element(variation, into)
     elif kind in ("Group", "Extended", "Compound"):
         for sub in variation.cv_items_dict:
             item = variation.get_item(sub)
@@ -41,11 +43,21 @@ def flatten(name, variation, into):
         raise ValueError(f"{name}: a {kind}")
 
 
+def blocks(data):
+    """The stream's data blocks by their lengths, one at a time: libasterix reads a stream recursively, a block a call."""
+    while data:
+        length = int.from_bytes(data[1:3], "big")
+        if length < 3 or length > len(data):
+            raise ValueError(f"a data block of {length} octets, {len(data)} are left")
+        parsed = RawDatablock.parse(Bits.from_bytes(data[:length]))
+        if isinstance(parsed, ValueError):
+            raise parsed
+        yield from parsed
+        data = data[length:]
+
+
 def records(data):
-    blocks = RawDatablock.parse(Bits.from_bytes(data))
-    if isinstance(blocks, ValueError):
-        raise blocks
-    for block in blocks:
+    for block in blocks(data):
         category = block.get_category()
         parsed = EDITIONS[category].cv_uap.parse(block.get_raw_records())
         if isinstance(parsed, ValueError):

@@ -3,7 +3,8 @@
 usage: dump1090_client.py beast|raw [FILE]
 
 Reads bytes from a file or standard input, gives them to a dump1090-mutability on a free port of this machine, and prints each frame that comes out
-of its raw output as one JSON line: {"frame": "8D4CA7E8..."}. It forwards Mode S frames whose parity it accepts, and repairs none here.
+of its raw output as one JSON line: {"frame": "8D4CA7E8..."}. It forwards frames whose parity it accepts, repairs none here, and (--net-verbatim)
+does not wait for an aircraft's second frame.
 """
 
 import json
@@ -38,7 +39,7 @@ def connected(port):
 
 def frames(data, form):
     ports = {INPUT[form]: free_port(), "--net-ro-port": free_port()}
-    command = ["dump1090-mutability", "--net-only", "--no-fix", "--net-bind-address", "127.0.0.1", "--net-ro-interval", "0", "--net-ro-size", "0"]
+    command = ["dump1090-mutability", "--net-only", "--no-fix", "--net-verbatim", "--net-bind-address", "127.0.0.1", "--net-ro-interval", "0", "--net-ro-size", "0"]
     for name in ALL_PORTS:
         command += [name, str(ports.get(name, 0))]
     program = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -28,7 +28,7 @@
 //! | 29 | 170 | target identification | six bits a character |
 //! | 30 | 020 | emitter category | |
 //! | 31 | 220 | wind, temperature, turbulence, as far as known | kt, °, 0.25 °C |
-//! | 33 | 146 | selected altitude of the control panel, else of the FMS | 25 ft |
+//! | 32 | 146 | selected altitude of the control panel, else of the FMS | 25 ft |
 //! | 38 | 132 | amplitude | dBm |
 //!
 //! Not sent, because the tracker does not keep it or it would claim what is not known: 008, 015, 016, 071, 072, 074, 110, 130 (131 says it
@@ -300,7 +300,7 @@ fn weather_and_intent(record: &mut Target, aircraft: &Aircraft, now_ms: u64) {
     if let Some((source, AltitudeFt(feet))) = selected {
         // Source provided, which, thirteen bits of 25 ft.
         let [high, low] = sixteen(feet.div_euclid(25));
-        record.item(33, &[0x80 | source << 5 | high & 0x1F, low]);
+        record.item(32, &[0x80 | source << 5 | high & 0x1F, low]);
     }
 }
 
