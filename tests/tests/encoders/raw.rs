@@ -48,12 +48,13 @@ fn digits(frame: &Frame) -> String {
 fn report(frame: &Frame, number: u64) -> FrameReport<'_> {
     FrameReport {
         bits: Bits::ModeS(frame),
-        level_cdbm: (number % 3 != 0).then_some(-3_000 - (number * 37 % 5_000) as i16),
-        quality_cdb: (number % 3 != 0).then_some((number * 53 % 5_000) as i16),
+        level_cdbm: (!number.is_multiple_of(3)).then_some(-3_000 - (number * 37 % 5_000) as i16),
+        quality_cdb: (!number.is_multiple_of(3)).then_some((number * 53 % 5_000) as i16),
         times: FrameTimes {
-            arrival: number.wrapping_mul(0x1A1A_1A1A_1A7),
-            since_pps_ns: (number % 2 != 0).then_some((number * 49_999_991 % 1_000_000_000) as u32),
-            utc_second: (number % 5 != 0).then_some((number * 7 % 86_400) as u32),
+            arrival: number.wrapping_mul(0x01A1_A1A1_A1A7),
+            since_pps_ns: (!number.is_multiple_of(2))
+                .then_some((number * 49_999_991 % 1_000_000_000) as u32),
+            utc_second: (!number.is_multiple_of(5)).then_some((number * 7 % 86_400) as u32),
         },
     }
 }

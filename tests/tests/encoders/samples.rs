@@ -58,7 +58,7 @@ fn of(log: Log) -> Vec<Sample> {
 fn reception(number: u64, at_ms: u64) -> Heard {
     let spread = (number.wrapping_mul(2_654_435_761) >> 8) % 7_000;
     let level = -9_500 + spread as i16;
-    let known = number % 5 != 0;
+    let known = !number.is_multiple_of(5);
     Heard {
         level_cdbm: known.then_some(level),
         quality_cdb: known.then_some(level + 10_000),
