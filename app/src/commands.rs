@@ -106,7 +106,10 @@ impl Device for Receiver {
                 let failed = checks.iter().find(|check| !check.passed);
                 failed.map_or(Ok(()), |check| Err(check.name))
             }
-            Report::Gnss => Err("not built yet"),
+            Report::Gnss => {
+                out.line(format_args!("{prefix}GNSS={}", self.clock.status()));
+                Ok(())
+            }
         }
     }
 }
@@ -173,8 +176,9 @@ impl Receiver {
         }
     }
 
-    /// Puts what both ports carry into force.
+    /// Puts what both ports carry, and the GNSS receiver's rate and delay, into force.
     pub fn apply_reports(&mut self) {
+        self.clock.apply(&self.stored.settings);
         self.console.apply(&self.stored.settings);
         self.comms.apply(&self.stored.settings);
     }

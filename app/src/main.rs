@@ -14,11 +14,12 @@
 //!
 //! How the image ended is kept over the reset and told by `AT+INFO` (`crash`).
 //!
-//! Not here yet: GNSS and PPS, automatic trigger level.
+//! Not here yet: automatic trigger level.
 #![no_std]
 #![no_main]
 #![forbid(unsafe_code)]
 
+mod clock;
 mod commands;
 mod confirm;
 mod console;
@@ -38,6 +39,7 @@ mod stats;
 mod store;
 
 use boot_contract::hand_over::{Cause, HandOver};
+use clock::Clock;
 use confirm::{Confirm, Due};
 use console::Inputs;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -55,7 +57,7 @@ use hardware::Hardware;
 use heapless::spsc::Queue;
 use load::Load;
 use receiver::{AIRCRAFT, Receiver, SharedCounters};
-use report::Gnss;
+use report::{FrameTimes, Gnss};
 use reporter::Reporter;
 use settings::Stored;
 use state::States;
@@ -118,6 +120,10 @@ fn start() -> Option<core::convert::Infallible> {
     let mut trigger_level = TriggerLevel::new(parts.trigger_level).ok()?;
     let console = parts.usb.attach()?;
 
+    let stored = loaded.unwrap_or(Stored::FACTORY);
+    // Before the sampler, with which the pulse's counters start.
+    let gnss_baud = stored.settings.gnss_baud;
+    let gnss = parts.gnss.map(|gnss| gnss.start(gnss_baud));
     let (producer, consumer) = QUEUE.take()?.split();
     let capture_start_us = timer::now_us();
     let capture =
@@ -134,7 +140,6 @@ fn start() -> Option<core::convert::Infallible> {
     });
     let mut wakes = parts.core1.launch(context, core1::run);
 
-    let stored = loaded.unwrap_or(Stored::FACTORY);
     trigger_level.set_mv(stored.settings.tl_hi_mv).ok()?;
     let confirm = Confirm::new(parts.flash);
     let is_held = hardware.is_config_held();
@@ -144,8 +149,10 @@ fn start() -> Option<core::convert::Infallible> {
         station: Station {
             unique_id: u64::from_be_bytes(parts.unique_id),
             gnss: Gnss::default(),
+            second_began: FrameTimes::at(0),
         },
         load: Load::new(&SHARED.core1_idle_us),
+        clock: Clock::new(gnss, gnss_baud, capture_start_us),
         queue: consumer,
         tracker: TRACKER.take()?,
         shared: &SHARED,
@@ -185,7 +192,7 @@ fn start() -> Option<core::convert::Infallible> {
         timer::acknowledge_alarm();
         let more_frames = receiver.frames(|| led.frame());
         let more_reports = receiver.reports();
-        let more_bytes = receiver.commands(&mut input);
+        let more_bytes = receiver.commands(&mut input) | receiver.listen();
         receiver.leave_if_due();
         if receiver.confirm.serve(receiver.now_ms()) == Due::GiveUp {
             LastWords::new(End::GaveUp).say();
@@ -195,6 +202,7 @@ fn start() -> Option<core::convert::Infallible> {
         let now_us = timer::now_us();
         if now_us >= next_beat_us {
             receiver.see_pin();
+            led.mark(receiver.marks());
             led.beat(receiver.shows());
             next_beat_us = next_beat(now_us, capture_start_us);
             let stalled_ms = (now_us - block_seen_us) / 1000;

@@ -8,6 +8,7 @@
 //! ```
 //! Time here is milliseconds of uptime, counted from the first sample, which is the zero of the frames' ticks too.
 
+use crate::clock::Clock;
 use crate::confirm::Confirm;
 use crate::console::Inputs;
 use crate::core1::QueueCounters;
@@ -29,10 +30,12 @@ use hal::board::{LED_GPIO, TriggerLevelPwm};
 use hal::{boot, timer, watchdog};
 use heapless::spsc::Consumer;
 use mode_s::Message;
-use report::{Bits, FrameReport, FrameTimes, Moment, Statistics};
+use report::{Bits, FrameReport, Moment, Statistics};
 use reporter::{Context, Reporter};
 use settings::Stored;
-use tracker::{Heard, Tracker};
+use settings::choices::RxSource;
+use timebase::State;
+use tracker::{Heard, RxPosition, Tracker};
 
 /// Aircraft tracked at once.
 pub const AIRCRAFT: usize = 400;
@@ -67,6 +70,7 @@ pub struct Receiver {
     /// Loads of the cores.
     pub load: Load,
     pub trigger_level: TriggerLevel<TriggerLevelPwm>,
+    pub clock: Clock,
     pub queue: Consumer<'static, RawFrame>,
     pub tracker: &'static mut Tracker<AIRCRAFT>,
     pub shared: &'static SharedCounters,
@@ -144,9 +148,9 @@ impl Receiver {
         u64::from(self.second) * 1000 + u64::from(into_second_us / 1000)
     }
 
-    /// Now, on the clocks that reports name; the time of day is not known yet.
+    /// Now, on the clocks that reports name.
     fn now(&self) -> Moment {
-        Moment::at(self.now_ms())
+        self.clock.moment(self.now_ms())
     }
 
     /// Takes frames from the queue. Returns whether more wait; `heard` is called for each.
@@ -175,7 +179,7 @@ impl Receiver {
                 bits: Bits::ModeS(&received),
                 level_cdbm: raw_frame.level,
                 quality_cdb: None,
-                times: FrameTimes::at(raw_frame.arrival),
+                times: self.clock.times(raw_frame.arrival),
             };
             let context = context!(self, now);
             self.console.frame(&report, true, &context);
@@ -207,6 +211,12 @@ impl Receiver {
         let now_ms = self.uptime_us() / 1000;
         self.second = (now_ms / 1000) as u32;
         self.second_ends_us = (u64::from(self.second) + 1) * 1_000_000;
+        self.station.gnss = self.clock.gnss();
+        self.station.second_began = self.clock.second_began();
+        if self.stored.settings.rx_source == RxSource::Gnss {
+            let position = self.clock.position();
+            self.tracker.set_rx_position(RxPosition::Gnss(position));
+        }
         self.tracker.begin_second(now_ms);
         self.is_ending_second = true;
     }
@@ -215,6 +225,7 @@ impl Receiver {
         self.log_second();
         let demodulated = self.shared.demod.snapshot().demodulated;
         let statistics = Statistics {
+            stamp_clock_hz: self.clock.measured_hz(),
             demodulations: Some(demodulated.wrapping_sub(self.last.0)),
             mode_s_frames: Some(self.decode.offered.wrapping_sub(self.last.1)),
             uptime_s: self.run_s(),
@@ -234,6 +245,25 @@ impl Receiver {
         let moved = inputs.serve(self);
         self.go_on_moving();
         moved
+    }
+
+    /// Takes what the GNSS receiver said. Returns whether there is more.
+    pub fn listen(&mut self) -> bool {
+        let (console, comms) = (&mut self.console, &mut self.comms);
+        self.clock.serve(|sentence| {
+            console.nmea(sentence);
+            comms.nmea(sentence);
+        })
+    }
+
+    /// Flashes that the LED shows each second for the state of the clock.
+    pub fn marks(&self) -> u8 {
+        match self.clock.state() {
+            State::None => 0,
+            State::Locked => 1,
+            State::Holdover => 2,
+            State::Coarse => 3,
+        }
     }
 
     /// Restarts once the reply has had its time.
@@ -302,6 +332,7 @@ impl Receiver {
             commands: self.commands,
             comms_received: self.comms_received,
             comms_received_lost: self.comms.port.outlet.0.received_lost(),
+            clock: self.clock.status(),
         }
     }
 }

@@ -4,15 +4,14 @@ use report::{FrameTimes, Gnss, Moment};
 use reporter::Context;
 use settings::Settings;
 
-/// Ticks (120 MHz) a millisecond.
-const TICKS_PER_MS: u64 = hal::timer::TICKS_PER_US * 1000;
-
 /// What of it is kept here.
 pub struct Station {
     /// The flash's unique id.
     pub unique_id: u64,
     /// The GNSS receiver's fix.
     pub gnss: Gnss,
+    /// The instant at which the second under way began, of UTC where that is known.
+    pub second_began: FrameTimes,
 }
 
 impl Station {
@@ -27,7 +26,7 @@ impl Station {
         let set = settings.serial.as_str();
         Context {
             moment,
-            second_began: FrameTimes::at(moment.now_ms / 1000 * 1000 * TICKS_PER_MS),
+            second_began: self.second_began,
             gnss: &self.gnss,
             source: if set.is_empty() { serial } else { set },
             firmware: version,

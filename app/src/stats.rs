@@ -10,6 +10,7 @@
 //!   +STATS=TRACKER,offered=..,born=..,..        see services/tracker
 //!   +STATS=STORE,saves=..,..,place=..,loaded=.. saves: since the first; a bank's pages were written a quarter as often
 //!   +STATS=I2C,transfers=..,refused=..,..       on boards that have the bus
+//!   +STATS=GNSS,state=..,fix=..,..            pulses = accepted + refused + waiting + without_fix; see docs/time.md
 //!   +STATS=CONSOLE,offered=..,sent=..,dropped=..,bytes=..,frames=..,frames_dropped=..,aircraft=..,..,commands=..
 //!   +STATS=COMMS_UART,the same,received=..,received_lost=..
 //! ```
@@ -73,6 +74,7 @@ pub struct Stats<'a> {
     pub commands: u32,
     pub comms_received: u32,
     pub comms_received_lost: u32,
+    pub clock: crate::clock::Status<'a>,
 }
 
 /// Bytes of the longest line: DEMOD, 21 counters of up to ten digits and their names.
@@ -189,6 +191,8 @@ impl Stats<'_> {
             ],
         ));
         self.settings(&mut out);
+        let mut gnss = Line::new();
+        out(write!(gnss, "STATS=GNSS,{}", self.clock).map(|()| gnss));
         out(port("CONSOLE", &self.console).and_then(|mut line| {
             write!(line, ",commands={}", self.commands)?;
             Ok(line)

@@ -7,6 +7,7 @@ mod beast;
 mod decode;
 mod device;
 mod factory;
+mod fleet;
 mod hardware;
 mod instruments;
 mod json;
@@ -81,6 +82,7 @@ fn command() -> Command {
         .subcommand(live::command())
         .subcommand(decode::command())
         .subcommand(scene::command())
+        .subcommand(fleet::command())
         .subcommand(update::command())
         .subcommand(keys::keygen())
         .subcommand(keys::pack())
@@ -96,6 +98,7 @@ fn main() -> ExitCode {
         Some(("twin", m)) => live::run(m),
         Some(("decode", m)) => decode::run(m),
         Some(("scene", m)) => scene::run(m),
+        Some(("fleet", m)) => fleet::run(m),
         Some(("update", m)) => update::run(m),
         Some(("keygen", m)) => keys::run_keygen(m),
         Some(("pack", m)) => keys::run_pack(m),

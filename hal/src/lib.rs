@@ -7,6 +7,7 @@
 //! | [`parts`] | everything, brought up once, in order | RESETS, XOSC, PLL_SYS, PLL_USB, CLOCKS, WATCHDOG.TICK |
 //! | [`board`] | pins by net name | IO_BANK0, PADS_BANK0 |
 //! | [`pio_sampler`] | PULSES at 8 Msps, 32 samples a word | PIO0 SM0 |
+//! | [`pps_counter`] | GNSS_PPS in system cycles since the first sample | PIO0 SM2, SM3 |
 //! | [`dma_ring`] | a ring that DMA fills for ever | DMA channels 0 and 1, INTS1 |
 //! | [`i2c`] | EEPROM's bus, every wait with an end | I2C1, IO_BANK0 and SIO of its pins |
 //! | [`timer`] | microseconds, one alarm | TIMER |
@@ -38,6 +39,7 @@ pub mod i2c;
 pub mod kept;
 pub mod parts;
 pub mod pio_sampler;
+pub mod pps_counter;
 pub mod sleep;
 pub mod stack;
 pub mod take_once;

@@ -2,16 +2,17 @@
 //!
 //! ```text
 //!   crystal ─ PLL_SYS 120 MHz, PLL_USB 48 MHz ─ clk_sys, clk_peri = PLL_SYS; clk_usb = PLL_USB; clk_ref = crystal
-//!   watchdog tick 1 MHz ─ TIMER, DMA, PIO0, UART1, PWM out of reset ─ pins by net name ─ ports
+//!   watchdog tick 1 MHz ─ TIMER, DMA, PIO0, UART0, UART1, PWM out of reset ─ pins by net name ─ ports
 //! ```
 
-use crate::board::{self, PULSES_GPIO, TriggerLevelLowPwm, TriggerLevelPwm};
+use crate::board::{self, GNSS_PPS_GPIO, PULSES_GPIO, TriggerLevelLowPwm, TriggerLevelPwm};
 use crate::core1::Core1;
 use crate::dma_ring::DmaChannels;
 use crate::flash::{self, Flash, UNIQUE_ID};
 use crate::i2c::I2c1;
 use crate::pio_sampler::PioSampler;
-use crate::uart::CommsUart;
+use crate::pps_counter::PpsCounter;
+use crate::uart::{CommsUart, GnssUart};
 use crate::usb::UsbConsole;
 use crate::watchdog::Watchdog;
 use rp2040_hal::clocks::{ClocksManager, UsbClock};
@@ -51,6 +52,22 @@ impl UsbParts {
     }
 }
 
+/// The GNSS receiver's wires before anybody listens.
+pub struct GnssParts {
+    uart: pac::UART0,
+    pps_gpio: u8,
+}
+
+impl GnssParts {
+    /// Starts its UART, and sets its pulse's counters up, which start with the sampler: this comes before it.
+    pub fn start(self, baud: u32) -> (GnssUart, PpsCounter) {
+        (
+            GnssUart::gnss(self.uart, baud),
+            PpsCounter::new(self.pps_gpio),
+        )
+    }
+}
+
 /// What the chip and the board offer, each once.
 pub struct Parts {
     /// Pins by net name that a driver takes; the rest are wired already.
@@ -71,6 +88,8 @@ pub struct Parts {
     pub sampler: PioSampler,
     /// Two DMA channels for its ring.
     pub dma: DmaChannels,
+    /// The GNSS receiver's UART and pulse, not started, on boards that have a connector for one.
+    pub gnss: Option<GnssParts>,
     /// COMMS_UART, running at [`COMMS_BAUD`].
     pub comms_uart: CommsUart,
     /// USB, not yet shown to the host.
@@ -123,6 +142,8 @@ impl Parts {
                 .clear_bit()
                 .pio0()
                 .clear_bit()
+                .uart0()
+                .clear_bit()
                 .uart1()
                 .clear_bit()
         });
@@ -131,6 +152,7 @@ impl Parts {
             done.timer().bit_is_clear()
                 || done.dma().bit_is_clear()
                 || done.pio0().bit_is_clear()
+                || done.uart0().bit_is_clear()
                 || done.uart1().bit_is_clear()
         } {}
 
@@ -164,6 +186,10 @@ impl Parts {
             i2c: pins.i2c.map(|_| I2c1::new(p.I2C1)),
             sampler: PioSampler::new(p.PIO0, PULSES_GPIO),
             dma: DmaChannels { dma: p.DMA },
+            gnss: GNSS_PPS_GPIO.map(|pps_gpio| GnssParts {
+                uart: p.UART0,
+                pps_gpio,
+            }),
             comms_uart: CommsUart::comms(p.UART1, COMMS_BAUD),
             usb: UsbParts { bus, unique_id },
             flash: Flash::new(FLASH_BYTES),

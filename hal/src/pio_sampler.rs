@@ -6,8 +6,10 @@
 //!   shift left, autopush at 32  the oldest sample ends in bit 31; a word every 4 us = 480 cycles
 //!   RX FIFO joined              8 words = 32 us of slack for the DMA
 //! ```
-//! State machine 1 and the other 31 instructions stay free for the later 120/7 MHz arrival sampler.
+//! State machine 1 stays free for the later 120/7 MHz arrival sampler; 2 and 3 and the last nine instructions are [`crate::pps_counter`]'s, which starts with
+//! this one.
 
+use crate::pps_counter::STATE_MACHINES;
 use rp2040_hal::pac;
 
 /// System clock cycles a sample.
@@ -56,17 +58,18 @@ impl PioSampler {
         Self { pio }
     }
 
-    /// Starts sampling; the first sample is tick 0.
+    /// Starts sampling, and the counters of PPS in the same cycle; the first sample is tick 0.
     pub fn start(&mut self) {
         self.clear_overflow();
-        // SAFETY: starts state machine 0, restarts it and its divider's phase, leaves the others stopped.
+        const STARTED: u8 = 1 | STATE_MACHINES;
+        // SAFETY: starts these state machines, restarts them and their dividers' phase, leaves the other one stopped.
         self.pio.ctrl().write(|w| unsafe {
             w.sm_enable()
-                .bits(1)
+                .bits(STARTED)
                 .sm_restart()
-                .bits(1)
+                .bits(STARTED)
                 .clkdiv_restart()
-                .bits(1)
+                .bits(STARTED)
         });
     }
 

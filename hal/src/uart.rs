@@ -27,6 +27,10 @@ pub const COMMS_TX_BYTES: usize = 8192;
 /// Characters of COMMS_UART's receive ring: 178 ms at 115 200 baud, 6.8 ms at 3 Mbaud. A turn of core 0's loop takes up to 3 ms when all of its code
 /// comes from flash for the first time.
 pub const COMMS_RX_WORDS: usize = 2048;
+/// Bytes of GNSS_UART's transmit ring: a receiver's configuration.
+pub const GNSS_TX_BYTES: usize = 256;
+/// Characters of GNSS_UART's receive ring: a whole second's sentences, and at 115 200 baud all that comes between two beats of core 0's loop (50 ms).
+pub const GNSS_RX_WORDS: usize = 1024;
 /// Lowest and highest rate, bits a second (the range the AT reference gives).
 pub const BAUD_RANGE: core::ops::RangeInclusive<u32> = 9_600..=3_000_000;
 
@@ -70,10 +74,17 @@ pub static UART1: Wiring = Wiring {
     rx_control: 9,
 };
 
-/// A receive ring, in a static; `N` is a power of two, at most 2048. No cell is read before a character has landed in it: the memory may hold
-/// anything at first.
-#[repr(align(4096))]
+/// A receive ring, in a static that is aligned to its size; `N` is a power of two, at most 2048. No cell is read before a character has landed in it: the
+/// memory may hold anything at first.
 pub struct Received<const N: usize>([AtomicU16; N]);
+
+/// COMMS_UART's, aligned.
+#[repr(align(4096))]
+struct CommsReceived(Received<COMMS_RX_WORDS>);
+/// GNSS_UART's, aligned.
+#[repr(align(2048))]
+struct GnssReceived(Received<GNSS_RX_WORDS>);
+const _: () = assert!(2 * COMMS_RX_WORDS == 4096 && 2 * GNSS_RX_WORDS == 2048);
 
 impl<const N: usize> Received<N> {
     /// A ring.
@@ -91,8 +102,21 @@ impl<const N: usize> Default for Received<N> {
 
 /// Alone in its bank of SRAM (`linker/app.x`).
 #[unsafe(link_section = ".comms_received")]
-static COMMS_RECEIVED: Received<COMMS_RX_WORDS> = Received::new();
+static COMMS_RECEIVED: CommsReceived = CommsReceived(Received::new());
 static COMMS_TO_SEND: ByteRing<COMMS_TX_BYTES> = ByteRing::new();
+
+static GNSS_RECEIVED: GnssReceived = GnssReceived(Received::new());
+static GNSS_TO_SEND: ByteRing<GNSS_TX_BYTES> = ByteRing::new();
+
+/// GNSS_UART.
+pub type GnssUart = Uart<GNSS_TX_BYTES, GNSS_RX_WORDS>;
+
+impl GnssUart {
+    /// Starts GNSS_UART on UART0.
+    pub(crate) fn gnss(_uart: pac::UART0, baud: u32) -> Self {
+        Self::start(&UART0, &GNSS_TO_SEND, &GNSS_RECEIVED.0, baud)
+    }
+}
 
 /// COMMS_UART.
 pub type CommsUart = Uart<COMMS_TX_BYTES, COMMS_RX_WORDS>;
@@ -100,7 +124,7 @@ pub type CommsUart = Uart<COMMS_TX_BYTES, COMMS_RX_WORDS>;
 impl CommsUart {
     /// Starts COMMS_UART on UART1.
     pub(crate) fn comms(_uart: pac::UART1, baud: u32) -> Self {
-        Self::start(&UART1, &COMMS_TO_SEND, &COMMS_RECEIVED, baud)
+        Self::start(&UART1, &COMMS_TO_SEND, &COMMS_RECEIVED.0, baud)
     }
 }
 
@@ -169,7 +193,7 @@ impl<const TX: usize, const RX: usize> Uart<TX, RX> {
         let source = self.registers().uartdr().as_ptr() as u32;
         let target = self.received.0.as_ptr() as u32;
         // SAFETY: the source is a FIFO register, the target a static ring whose address bits above its size never change (RING_SIZE; it
-        // stands on a multiple of MOST_RX_BYTES); its cells are atomics, so the hardware's writes are no data race.
+        // stands on a multiple of its size); its cells are atomics, so the hardware's writes are no data race.
         unsafe {
             data.ch_read_addr().write(|w| w.bits(source));
             data.ch_write_addr().write(|w| w.bits(target));

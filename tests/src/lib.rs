@@ -12,6 +12,7 @@ pub mod processor_time;
 pub mod profile;
 pub mod reception;
 pub mod settings_store;
+pub mod timing;
 pub mod transcript;
 
 use std::path::PathBuf;

@@ -11,6 +11,7 @@ pub mod board;
 pub mod chip;
 pub mod completed;
 pub mod fault;
+pub mod fleet;
 pub mod front_end;
 pub mod gdb;
 pub mod image;

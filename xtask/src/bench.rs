@@ -7,7 +7,7 @@ use std::process::Command;
 use crate::{fw, golden, peers, workspace};
 
 /// The benchmarks and what they measure.
-const BENCHES: [(&str, &str); 15] = [
+const BENCHES: [(&str, &str); 16] = [
     (
         "twin",
         "emulated MHz and share of real time: one core, two cores, two cores with capture and DMA, the image on real traffic",
@@ -35,6 +35,10 @@ const BENCHES: [(&str, &str); 15] = [
     (
         "arrival",
         "error of the time of arrival by level; --frames N, --nominal",
+    ),
+    (
+        "timing",
+        "stamps against UTC: the time base on hours of simulated crystals and GNSS receivers, the image in the twin; --hours N, --no-device",
     ),
     (
         "false-frames",

@@ -43,6 +43,7 @@ fn layer_of(name: &str) -> &'static str {
         "mode_s" | "demod" | "tracker" | "report" | "reporter" | "settings" | "shell" | "store" => {
             "services"
         }
+        "nmea_0183" | "timebase" => "services",
         "drivers" => "drivers",
         "hal" => "hal",
         "app" | "bootloader" => "image",

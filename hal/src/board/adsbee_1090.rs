@@ -2,7 +2,7 @@
 //!
 //! | GPIO | net | used by | function |
 //! |---|---|---|---|
-//! | 0, 1 | GNSS_UART TX, RX | nobody yet | – |
+//! | 0, 1 | GNSS_UART TX, RX | `uart` | UART0 |
 //! | 2, 3 | EEPROM SDA, SCL (I2C1), pulled up | `i2c` | I2C1 |
 //! | 4, 5 | COMMS_UART TX, RX | `uart` | UART1 |
 //! | 6, 7, 8 | SUBG_EN, SUBG_IRQ, SUBG_CS (sub-GHz radio) | nobody | – |
@@ -17,14 +17,14 @@
 //! | 20 | BOOT_CONFIG (free pin, so named by a ruling), pulled up | bootloader, app | SIO in |
 //! | 21-24 | free | nobody | – |
 //! | 25 | TRIGGER_LEVEL, PWM through an RC | `drivers::trigger_level` | PWM4 B |
-//! | 26 | GNSS_PPS | nobody yet | – |
+//! | 26 | GNSS_PPS | `pps_counter` | PIO0 in |
 //! | 27, 28 | TRIGGER_LEVEL_ADC (ADC1), RSSI_ADC (ADC2) | nobody yet | – |
 //!
 //! Source: the hardware facts in the project's ADSBee reference notes. Pins that nobody uses stay as reset leaves them.
 
-use super::Pins;
-use rp2040_hal::gpio::bank0::{Gpio24, Gpio25};
-use rp2040_hal::gpio::{self, FunctionPwm, Pin, PinState, PullNone};
+use super::{GnssPins, Pins};
+use rp2040_hal::gpio::bank0::{Gpio24, Gpio25, Gpio26};
+use rp2040_hal::gpio::{self, FunctionPio0, FunctionPwm, Pin, PinState, PullDown, PullNone};
 use rp2040_hal::pwm::{A, B, Channel, FreeRunning, Pwm4, Slice, Slices};
 
 /// The board's name, as an image's header has it: ASCII, zero-padded.
@@ -34,6 +34,11 @@ pub const NAME: [u8; 16] = *b"adsbee_1090\0\0\0\0\0";
 pub const HAS_EEPROM: bool = true;
 /// Whether the receive gain's potentiometer is fitted.
 pub const HAS_POTENTIOMETER: bool = false;
+
+/// GPIO of GNSS_PPS where the board has a GNSS connector: the counters' jump pin.
+pub const GNSS_PPS_GPIO: Option<u8> = Some(26);
+/// GNSS_PPS.
+pub type GnssPps = Pin<Gpio26, FunctionPio0, PullDown>;
 
 /// Trigger level.
 pub type TriggerLevel = Pin<Gpio25, FunctionPwm, PullNone>;
@@ -47,6 +52,12 @@ pub type TriggerLevelLowPwm = Channel<Slice<Pwm4, FreeRunning>, A>;
 /// Gives every pin in use its function.
 pub(crate) fn pins(pins: gpio::Pins) -> Pins {
     Pins {
+        gnss: Some(GnssPins {
+            tx: pins.gpio0.reconfigure(),
+            rx: pins.gpio1.reconfigure(),
+            pps: pins.gpio26.reconfigure(),
+            enable: None,
+        }),
         comms_tx: pins.gpio4.reconfigure(),
         comms_rx: pins.gpio5.reconfigure(),
         led: pins

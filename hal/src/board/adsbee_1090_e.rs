@@ -19,8 +19,8 @@
 //! Source: the hardware facts in the project's ADSBee reference notes. Pins that nobody uses stay as reset leaves them.
 
 use super::Pins;
-use rp2040_hal::gpio::bank0::{Gpio24, Gpio25};
-use rp2040_hal::gpio::{self, FunctionPwm, Pin, PinState, PullNone};
+use rp2040_hal::gpio::bank0::{Gpio24, Gpio25, Gpio26};
+use rp2040_hal::gpio::{self, FunctionPio0, FunctionPwm, Pin, PinState, PullDown, PullNone};
 use rp2040_hal::pwm::{A, B, Channel, FreeRunning, Pwm4, Slice, Slices};
 
 /// The board's name, as an image's header has it: ASCII, zero-padded.
@@ -30,6 +30,11 @@ pub const NAME: [u8; 16] = *b"adsbee_1090_e\0\0\0";
 pub const HAS_EEPROM: bool = true;
 /// Whether the receive gain's potentiometer is fitted.
 pub const HAS_POTENTIOMETER: bool = true;
+
+/// GPIO of GNSS_PPS: no connector.
+pub const GNSS_PPS_GPIO: Option<u8> = None;
+/// No GNSS_PPS on this board; its type is the other board's.
+pub type GnssPps = Pin<Gpio26, FunctionPio0, PullDown>;
 
 /// The high level.
 pub type TriggerLevel = Pin<Gpio24, FunctionPwm, PullNone>;
@@ -43,6 +48,7 @@ pub type TriggerLevelLowPwm = Channel<Slice<Pwm4, FreeRunning>, B>;
 /// Gives every pin in use its function.
 pub(crate) fn pins(pins: gpio::Pins) -> Pins {
     Pins {
+        gnss: None,
         comms_tx: pins.gpio4.reconfigure(),
         comms_rx: pins.gpio5.reconfigure(),
         led: pins

@@ -2,9 +2,9 @@
 //!
 //! | GPIO | net | used by | function |
 //! |---|---|---|---|
-//! | 0, 1 | GNSS_UART TX, RX | nobody yet | – |
-//! | 2 | GNSS_PPS | nobody yet | – |
-//! | 3 | GNSS_EN | nobody yet | – |
+//! | 0, 1 | GNSS_UART TX, RX | `uart` | UART0 |
+//! | 2 | GNSS_PPS | `pps_counter` | PIO0 in |
+//! | 3 | GNSS_EN, high = on | – | SIO out |
 //! | 4, 5 | COMMS_UART TX, RX | `uart` | UART1 |
 //! | 6, 7, 8 | SUBG_EN, SUBG_IRQ, SUBG_CS (sub-GHz radio) | nobody | – |
 //! | 9 | ESP32_CS | nobody yet | – |
@@ -22,9 +22,9 @@
 //!
 //! Source: the hardware facts in the project's ADSBee reference notes. Pins that nobody uses stay as reset leaves them.
 
-use super::Pins;
-use rp2040_hal::gpio::bank0::{Gpio24, Gpio26};
-use rp2040_hal::gpio::{self, FunctionPwm, Pin, PinState, PullNone};
+use super::{GnssPins, Pins};
+use rp2040_hal::gpio::bank0::{Gpio2, Gpio24, Gpio26};
+use rp2040_hal::gpio::{self, FunctionPio0, FunctionPwm, Pin, PinState, PullDown, PullNone};
 use rp2040_hal::pwm::{A, Channel, FreeRunning, Pwm4, Pwm5, Slice, Slices};
 
 /// The board's name, as an image's header has it: ASCII, zero-padded.
@@ -34,6 +34,11 @@ pub const NAME: [u8; 16] = *b"adsbee_1090u\0\0\0\0";
 pub const HAS_EEPROM: bool = false;
 /// Whether the receive gain's potentiometer is fitted.
 pub const HAS_POTENTIOMETER: bool = false;
+
+/// GPIO of GNSS_PPS where the board has a GNSS connector: the counters' jump pin.
+pub const GNSS_PPS_GPIO: Option<u8> = Some(2);
+/// GNSS_PPS.
+pub type GnssPps = Pin<Gpio2, FunctionPio0, PullDown>;
 
 /// Trigger level.
 pub type TriggerLevel = Pin<Gpio26, FunctionPwm, PullNone>;
@@ -47,6 +52,17 @@ pub type TriggerLevelLowPwm = Channel<Slice<Pwm4, FreeRunning>, A>;
 /// Gives every pin in use its function.
 pub(crate) fn pins(pins: gpio::Pins) -> Pins {
     Pins {
+        gnss: Some(GnssPins {
+            tx: pins.gpio0.reconfigure(),
+            rx: pins.gpio1.reconfigure(),
+            pps: pins.gpio2.reconfigure(),
+            // Taken to be active high, as the twin does.
+            enable: Some(
+                pins.gpio3
+                    .into_pull_type()
+                    .into_push_pull_output_in_state(PinState::High),
+            ),
+        }),
         comms_tx: pins.gpio4.reconfigure(),
         comms_rx: pins.gpio5.reconfigure(),
         led: pins

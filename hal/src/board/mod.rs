@@ -7,6 +7,7 @@
 //! | trigger levels | 1 | 1 | 2 |
 //! | receive gain | fixed | fixed | potentiometer |
 //! | bias tee, ESP32 | yes | yes | no |
+//! | GNSS receiver | PPS on GPIO 26 | PPS on GPIO 2, enable on 3 | no |
 //!
 //! All have the same items, so that nothing else of the firmware asks which board it is on: what a board lacks is `None`.
 
@@ -28,7 +29,9 @@ mod adsbee_1090_e;
 #[cfg(feature = "adsbee_1090_e")]
 pub use adsbee_1090_e::*;
 
-use rp2040_hal::gpio::bank0::{Gpio2, Gpio3, Gpio4, Gpio5, Gpio14, Gpio15, Gpio18, Gpio19, Gpio20};
+use rp2040_hal::gpio::bank0::{
+    Gpio0, Gpio1, Gpio2, Gpio3, Gpio4, Gpio5, Gpio14, Gpio15, Gpio18, Gpio19, Gpio20,
+};
 use rp2040_hal::gpio::{
     FunctionI2C, FunctionPio0, FunctionSioInput, FunctionSioOutput, FunctionUart, Pin, PullDown,
     PullNone, PullUp,
@@ -51,14 +54,30 @@ pub type BootConfig = Pin<Gpio20, FunctionSioInput, PullUp>;
 pub type BiasTee = Pin<Gpio18, FunctionSioOutput, PullNone>;
 /// The ESP32's supply, high = on.
 pub type Esp32Enable = Pin<Gpio14, FunctionSioOutput, PullNone>;
+/// The GNSS receiver's supply, high = on, on the one board that switches it.
+pub type GnssEnable = Pin<Gpio3, FunctionSioOutput, PullNone>;
 /// SDA and SCL.
 pub type I2cPins = (
     Pin<Gpio2, FunctionI2C, PullUp>,
     Pin<Gpio3, FunctionI2C, PullUp>,
 );
 
+/// The GNSS receiver's connector.
+pub struct GnssPins {
+    /// GNSS_UART transmit.
+    pub tx: Pin<Gpio0, FunctionUart, PullNone>,
+    /// GNSS_UART receive; pulled up, so a board without a receiver is idle.
+    pub rx: Pin<Gpio1, FunctionUart, PullUp>,
+    /// GNSS_PPS; pulled down, so a board without a receiver has no edges.
+    pub pps: GnssPps,
+    /// The receiver's supply, on.
+    pub enable: Option<GnssEnable>,
+}
+
 /// The pins in use, by net name.
 pub struct Pins {
+    /// GNSS receiver.
+    pub gnss: Option<GnssPins>,
     /// COMMS_UART transmit.
     pub comms_tx: Pin<Gpio4, FunctionUart, PullNone>,
     /// COMMS_UART receive; pulled up, so an open line is idle.

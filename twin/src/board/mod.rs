@@ -142,6 +142,8 @@ pub struct Playback {
     pub start_cycle: u64,
     /// The device's tick count there: cycles since its first sample.
     pub start_tick: u64,
+    /// True time of it, picoseconds since power-on: what GNSS and PPS count in.
+    pub start_true_ps: u128,
 }
 
 impl Board {
@@ -351,10 +353,10 @@ impl Board {
         let first = self.chip.bus.pio[0].enabled_at[0] + 1;
         let words = ((self.chip.now() - first) / WORD_CYCLES + 2).next_multiple_of(PLAY_STEP_WORDS);
         let start = first + words * WORD_CYCLES;
-        self.chip
-            .bus
-            .play(source, self.kind.pulses, start - SYNC_CYCLES);
+        let pulses = self.kind.pulses;
+        let start_true_ps = self.chip.bus.play(source, pulses, start - SYNC_CYCLES);
         let playback = Playback {
+            start_true_ps,
             start_cycle: start,
             start_tick: words * WORD_CYCLES,
         };

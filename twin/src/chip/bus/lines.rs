@@ -34,6 +34,9 @@ impl Bus {
     pub(super) fn resolve_pins_at(&mut self, at: u64) {
         self.pins.now = at;
         self.drive_pins();
+        for pio in &mut self.pio {
+            pio.unpark_unsteady(self.now, &self.pins);
+        }
         self.sense_cts();
         self.sense_pwm();
         self.sense_spi();

@@ -140,8 +140,8 @@ impl Bus {
                 0x5000_0000 => self.dma.read(offset),
                 0x5010_0000 => Some(self.usb.word(offset as usize)),
                 0x5011_0000 => self.usb.read(offset),
-                0x5020_0000 => self.pio[0].read(offset),
-                0x5030_0000 => self.pio[1].read(offset),
+                0x5020_0000 => self.pio[0].read_at(offset, now),
+                0x5030_0000 => self.pio[1].read_at(offset, now),
                 _ => None,
             },
         }
@@ -276,6 +276,7 @@ impl Bus {
             0x5020_0000 | 0x5030_0000 => {
                 let which = usize::from(base == 0x5030_0000);
                 self.pins.look_ahead(now);
+                self.pio[which].unpark(now);
                 let ok = self.pio[which].write(offset, value, now, &mut self.pins);
                 self.watch_pins();
                 self.resolve_pins();

@@ -146,6 +146,9 @@ impl Bus {
         }
         if self.pins.next_change() <= now {
             self.pins.synced(now, 0);
+            for pio in &mut self.pio {
+                pio.unpark_moved(now, &mut self.pins);
+            }
             self.resolve_pins();
         }
         if self.deadlines.known && self.deadlines.earliest <= now {

@@ -133,12 +133,13 @@ impl Bus {
         self.clocks_changed();
     }
 
-    /// Plays `source` into `pin`, its time zero at cycle `start`, which lies ahead.
-    pub fn play(&mut self, source: Played, pin: u32, start: u64) {
+    /// Plays `source` into `pin`, its time zero at cycle `start`, which lies ahead; gives the true time of that, picoseconds since power-on.
+    pub fn play(&mut self, source: Played, pin: u32, start: u64) -> u128 {
         let hz = u128::from(self.sys_hz.max(1));
         let start_ps = self.time_ps + u128::from(start - self.since) * PS_A_SECOND / hz;
         self.apply_trigger_level();
         self.pins.play(source, pin, start, start_ps, &self.crystal);
+        self.crystal.true_ps(start_ps)
     }
 
     // ---- analog nets -------------------------------------------------------------------------------------------------------

@@ -282,6 +282,13 @@ impl Pins {
         self.seen
     }
 
+    /// Whether readers see the same level of `pin` from cycle `from` on until something outside changes it at a cycle that [`Pins::next_change`] names, or a
+    /// register or a peripheral does.
+    pub fn steady(&self, pin: u32, from: u64, bypass: u32) -> bool {
+        let played = self.playback.as_ref().is_some_and(|p| p.pin == pin);
+        !played && bypass >> pin & 1 == 0 && from >= self.settled_at
+    }
+
     #[cold]
     fn on_their_way(&self, now: u64, bypass: u32) -> u32 {
         let at_once = bypass | self.edged;

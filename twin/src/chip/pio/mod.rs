@@ -26,6 +26,7 @@ mod outputs;
 mod registers;
 mod sampler;
 mod state_machine;
+mod waiting;
 
 use super::pins::Pins;
 pub use observed::Observed;
@@ -44,6 +45,9 @@ pub struct Pio {
     irq_clear: u32,
     /// State machines with OUT_STICKY.
     sticky: u32,
+    /// State machines that only count and wait ([`waiting`]), and the level each sees at its pin.
+    parked: u32,
+    parked_level: u32,
     sync_bypass: u32,
     inte: [u32; 2],
     intf: [u32; 2],
@@ -78,6 +82,8 @@ impl Pio {
             irq_set: 0,
             irq_clear: 0,
             sticky: 0,
+            parked: 0,
+            parked_level: 0,
             sync_bypass: 0,
             inte: [0; 2],
             intf: [0; 2],
@@ -97,13 +103,13 @@ impl Pio {
 
     /// Some state machine runs, or has something to do.
     pub fn running(&self) -> bool {
-        self.soonest != u64::MAX
+        self.soonest != u64::MAX || self.parked != 0
     }
 
     fn find_soonest(&mut self) {
         self.soonest = u64::MAX;
         for (n, sm) in self.sm.iter().enumerate() {
-            if self.enabled & (1 << n) != 0 {
+            if self.enabled & !self.parked & (1 << n) != 0 {
                 self.soonest = self.soonest.min(sm.next);
             } else if sm.exec.is_some() {
                 self.soonest = self.soonest.min(sm.retry_at);
@@ -115,11 +121,16 @@ impl Pio {
     /// Returns that cycle, or `limit`.
     pub fn run(&mut self, limit: u64, pins: &mut Pins) -> u64 {
         self.visible = false;
+        let idle = self.parked;
+        self.park(pins);
+        if self.parked != idle {
+            self.find_soonest();
+        }
         while self.soonest <= limit {
-            let alone =
-                self.enabled.is_power_of_two() && self.sm.iter().all(|sm| sm.exec.is_none());
+            let awake = self.enabled & !self.parked;
+            let alone = awake.is_power_of_two() && self.sm.iter().all(|sm| sm.exec.is_none());
             if alone {
-                self.sample(self.enabled.trailing_zeros() as usize, limit, pins);
+                self.sample(awake.trailing_zeros() as usize, limit, pins);
                 if self.soonest > limit {
                     break;
                 }
@@ -141,6 +152,9 @@ impl Pio {
     /// (datasheet 3.7, EXECCTRL: a stalled one is latched until it completes).
     fn take_turn(&mut self, n: usize, now: u64, pins: &mut Pins) {
         let sm = &mut self.sm[n];
+        if self.parked & (1 << n) != 0 {
+            return;
+        }
         if self.enabled & (1 << n) != 0 {
             if self.sticky & (1 << n) != 0 {
                 self.assert_kept(n);

@@ -37,6 +37,14 @@ impl Pio {
             && (self.intr() & self.inte[line] | self.intf[line]) != 0
     }
 
+    /// Reads a register at cycle `now`: those of a state machine's inside are up to date even where it only waits.
+    pub fn read_at(&mut self, offset: u32, now: u64) -> Option<u32> {
+        if offset >= 0xc8 {
+            self.unpark(now);
+        }
+        self.read(offset)
+    }
+
     /// Reads a register; `None` if it is not modelled.
     pub fn read(&mut self, offset: u32) -> Option<u32> {
         Some(match offset {

@@ -1,0 +1,54 @@
+//! The shipped image with a GNSS receiver: it locks, stamps, holds over and says so.
+
+use tests::reception::arrival::{mean, rms};
+use tests::timing::device::Device;
+use twin::board::gnss::Options;
+use twin::chip::crystal::Deviation;
+use twin::fault::Fault;
+use twin::source::scene::traffic::{Range, Traffic};
+
+fn traffic(seed: u64, frames: usize) -> Traffic {
+    Traffic {
+        seed,
+        frames,
+        spacing_ps: 2_000_000_000,
+        jitter_ps: 500_000_000,
+        snr_db: Range::at(30.0),
+        ..Traffic::default()
+    }
+}
+
+#[test]
+fn it_locks_and_its_stamps_are_utc() {
+    let crystal = Deviation {
+        offset_ppb: 20_000,
+        ..Deviation::default()
+    };
+    let mut device = Device::start(crystal, Options::default());
+    // Power-on, boot and the fix are two to four seconds; four pulses and three names from there.
+    device.run_ms(10_000);
+    assert_eq!(device.gnss("state").as_deref(), Some("LOCKED"));
+    let hz: i64 = device
+        .gnss("clock_hz")
+        .and_then(|hz| hz.parse().ok())
+        .expect("a number");
+    assert!((hz - 120_002_400).abs() <= 2, "{hz}");
+    let frames = device.play(&traffic(7, 400).scene());
+    let errors: Vec<f64> = frames.iter().filter_map(|f| f.error_ns()).collect();
+    assert!(errors.len() > 390, "{} of {}", errors.len(), frames.len());
+    let delay = mean(&errors);
+    let spread: Vec<f64> = errors.iter().map(|e| e - delay).collect();
+    println!("delay {delay:.1} ns, rms {:.1} ns", rms(&spread));
+    assert!(delay.abs() < 60.0, "{delay}");
+    assert!(rms(&spread) < 60.0, "{}", rms(&spread));
+
+    device
+        .board
+        .carry_out(Fault::Pps(false))
+        .expect("it happens");
+    device.run_ms(2_600);
+    assert_eq!(device.gnss("state").as_deref(), Some("HOLDOVER"));
+    device.run_ms(3_000);
+    let frames = device.play(&traffic(8, 20).scene());
+    assert!(frames.len() > 15 && frames.iter().all(|f| f.ts1s_ns.is_none()));
+}
