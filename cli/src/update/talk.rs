@@ -3,7 +3,7 @@
 //! | state | told by | the way to the bootloader |
 //! |---|---|---|
 //! | BOOTLOADER | `AT+BOOT?` is answered `AT+BOOT=1` | `AT+LOCK=1` |
-//! | RUN, on CONSOLE | … `ERROR …` | `AT+REBOOT_BOOTLOADER` |
+//! | RUN, on CONSOLE | … `+BOOT=0`, of older firmware `ERROR …` | `AT+REBOOT_BOOTLOADER` |
 //! | CONFIGURATION | … `AT+ERROR (…)` or `AT+BOOT=0` | `AT+REBOOT_BOOTLOADER` |
 //! | RUN, on COMMS_UART | … nothing | `AT+CONFIG=1`, then as in CONFIGURATION |
 //!
@@ -13,6 +13,8 @@ use super::line::Line;
 
 /// Rate of the bootloader and of CONFIGURATION, bits a second.
 pub const FIXED_BAUD: u32 = 115_200;
+/// What a start without stored settings says before `AT+RUN_START`.
+const MISSING_SETTINGS: &str = "AT+ERROR (Settings missing, loaded default)\r\n";
 /// How long an answer may take, ms: a line of a report may have to leave first.
 const ANSWER_MS: u64 = 700;
 /// How long `AT+CONFIG=1` may take: the last whole report leaves first.
@@ -68,11 +70,12 @@ impl Talk<'_> {
         loop {
             let left = end.saturating_sub(self.line.now_ms());
             heard.extend(self.line.read(left)?);
-            let text = String::from_utf8_lossy(&heard);
+            // A firmware without stored settings says so when it starts: no answer to anything.
+            let text = String::from_utf8_lossy(&heard).replace(MISSING_SETTINGS, "");
             let is_there =
                 |words: &&str| text.find(words).is_some_and(|at| text[at..].contains('\n'));
             if left == 0 || wanted.iter().any(is_there) {
-                return Ok(text.into_owned());
+                return Ok(text);
             }
         }
     }
@@ -81,14 +84,15 @@ impl Talk<'_> {
     pub fn state(&mut self) -> std::io::Result<State> {
         for _ in 0..SILENT_AFTER {
             self.line.write(CANCEL)?;
-            let said = self.ask("AT+BOOT?", &["AT+BOOT="], ANSWER_MS)?;
+            let said = self.ask("AT+BOOT?", &["+BOOT="], ANSWER_MS)?;
             if said.contains("AT+BOOT=1") {
                 return Ok(State::Bootloader);
             }
             if said.contains("AT+BOOT=0") || said.contains("AT+ERROR (") {
                 return Ok(State::Configuration);
             }
-            if said.contains("ERROR ") {
+            // The other dialect; firmware before it had the command refused it.
+            if said.contains("+BOOT=0") || said.contains("ERROR ") {
                 return Ok(State::Run);
             }
         }
