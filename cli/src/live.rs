@@ -181,7 +181,7 @@ impl Session {
         let listens = board.wait_for_console_if_expected()?;
         let named = matches.get_one::<String>("protocol").map(String::as_str);
         // Somebody who watches wants to see something; a program on a port finds the device as it is.
-        let watches = listens && serial.is_none() && !matches.contains_id("at");
+        let watches = listens && serial.is_none() && !is_resumed && !matches.contains_id("at");
         let protocol = named.or(watches.then_some("CSBEE"));
         let lines = matches.get_many::<String>("at").into_iter().flatten();
         let commands = named.is_some() || matches.contains_id("at");
