@@ -1,15 +1,19 @@
 //! Power cuts on the host. `--update`: through updates, the bootloader's own code over a flash that tears at every operation, with the log at each place
 //! where it changes sectors; `--twice`: the power fails again during each recovery. `--settings`: through saves of settings, the firmware's store over an
-//! EEPROM and a flash that tear at every byte of every operation; beside it `sequential-storage`; `--step N`: each N-th size.
+//! EEPROM and a flash that tear at every byte of every operation; beside it `sequential-storage`; `--step N`: each N-th size;
+//! `--twin`: also the image's own save in the twin; `--saves N`: so many of them there, and what they wear.
 //!
 //! `--seeds N`: ways in which each operation tears.
 
 use std::process::ExitCode;
 
 use tests::Bench;
-use tests::power_cuts::settings::{Found, campaign, keeper, keeper::Keeper, memory::Kind};
+use tests::power_cuts::settings::{Found, campaign, in_twin, keeper, keeper::Keeper, memory::Kind};
 use tests::power_cuts::{Outcome, Script};
+use twin::board::kind::{ADSBEE_1090, ADSBEE_1090U};
 
+/// Shares of an operation's time at which the supply fails in the twin.
+const SHARES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
 /// Ways in which each operation tears, unless told.
 const SEEDS: u64 = 10;
 /// The longest set of settings of the firmware, bytes.
@@ -131,6 +135,24 @@ fn settings() -> std::io::Result<bool> {
                 ours.add(all);
             }
         }
+    }
+    if tests::flag("--twin") {
+        for kind in [ADSBEE_1090, ADSBEE_1090U] {
+            let found = in_twin::campaign(kind, &SHARES, 8);
+            bench.line(&format!(
+                "the image on {} in the twin: {} cuts, {} new, {} lost",
+                kind.name, found.cuts, found.new, found.lost
+            ));
+            ours.add(found);
+        }
+    }
+    let saves = tests::number_option("--saves", 0);
+    if saves > 0 {
+        let (least, most) = in_twin::wear(ADSBEE_1090, saves);
+        bench.line(&format!(
+            "{saves} saves by the image in the twin, receiver off: write cycles of a page {least} to {most}; a bank's share is {}",
+            saves.div_ceil(4)
+        ));
     }
     let Found {
         cuts,

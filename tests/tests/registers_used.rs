@@ -27,6 +27,8 @@ fn used() -> String {
         "AT+TL_SET=1200,1300",
         "AT+PROTOCOL=CONSOLE,CSBEE",
         "AT+BAUDRATE=COMMS,921600",
+        "AT+TEST",
+        "AT+SETTINGS=SAVE",
     ] {
         board.console_write(format!("{line}\r\n").as_bytes());
         board.run_ms(100).expect("the chip runs");

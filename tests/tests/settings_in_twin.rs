@@ -4,7 +4,7 @@ use tests::power_cuts::settings::in_twin::{ask, campaign, in_run, wear};
 use twin::board::kind::{ADSBEE_1090, ADSBEE_1090_E, ADSBEE_1090U};
 
 /// Shares of an operation's time at which the supply fails.
-const SHARES: [f64; 3] = [0.0, 0.4, 0.95];
+const SHARES: [f64; 4] = [0.0, 0.3, 0.7, 1.0];
 
 #[test]
 fn no_cut_of_a_save_loses_or_mixes_settings_on_eeprom_and_flash() {

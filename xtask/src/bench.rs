@@ -58,7 +58,7 @@ const BENCHES: [(&str, &str); 16] = [
     ),
     (
         "power-cuts",
-        "on the host; --update: at every flash operation of updates and inside it, --twice; --settings: at every byte of saves, --step N; --seeds N",
+        "on the host; --update: at every flash operation of updates and inside it, --twice; --settings: at every byte of saves, --step N, --twin, --saves N; --seeds N",
     ),
     (
         "cpu-peers",
