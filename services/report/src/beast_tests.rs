@@ -51,6 +51,23 @@ fn twelve_megahertz_stamps_name_the_end_of_the_first_56_bits() {
 }
 
 #[test]
+fn tenths_are_whole_tenths() {
+    for edge in [0, 1 << 16, 1 << 17, 1 << 32, 1 << 48, u64::MAX - 2_000] {
+        for ticks in edge..edge + 2_000 {
+            assert_eq!(tenth(ticks), ticks / TICKS_PER_COUNT, "{ticks}");
+        }
+    }
+    let mut dice = crate::test_aircraft::Dice(7);
+    for _ in 0..100_000 {
+        let ticks = dice.roll() >> dice.below(60);
+        assert_eq!(tenth(ticks), ticks / TICKS_PER_COUNT, "{ticks}");
+    }
+    for sum in 0..=65_538u32 {
+        assert_eq!((sum * 52_429) >> 18, sum / 5);
+    }
+}
+
+#[test]
 fn gps_stamps_name_the_end_of_the_frame_and_carry_across_midnight() {
     let long = Frame::from_bytes(&[0x88; 14]).unwrap();
     let short = Frame::from_bytes(&[0x28; 7]).unwrap();
