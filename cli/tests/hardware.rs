@@ -88,7 +88,7 @@ fn memories_outlive_the_run_and_a_flip_in_the_file_is_refused_until_it_is_flashe
     assert_eq!((kept.len(), kept[0x10], kept[0x11]), (8192, 0xfe, 0xff));
 
     // A second run reads both and turns a bit of the app over just before its end; the third finds it so.
-    let (code, said) = twin(&[&keep[..], &["--fault", "flip=flash:16000.3@4300ms"]].concat());
+    let (code, said) = twin(&[&keep[..], &["--fault", "flip=flash:16000.3@4000ms"]].concat());
     assert_eq!(code, Some(0), "{said}");
     assert_eq!(std::fs::read(&eeprom).expect("it was kept")[0x10], 0xfe);
     let (code, said) = twin(&keep);
