@@ -3,11 +3,12 @@
 //! EEPROM and a flash that tear at every byte of every operation; beside it `sequential-storage`; `--step N`: each N-th size;
 //! `--twin`: also the image's own save in the twin; `--saves N`: so many of them there, and what they wear.
 //!
-//! `--seeds N`: ways in which each operation tears.
+//! `--seeds N`: ways in which each operation tears. Behind `--update` the shipped images in the twin, watchdog resets among the cuts; `--images N` of them.
 
 use std::process::ExitCode;
 
 use tests::Bench;
+use tests::power_cuts::in_twin::{Part, Script as Images};
 use tests::power_cuts::settings::{Found, campaign, in_twin, keeper, keeper::Keeper, memory::Kind};
 use tests::power_cuts::{Outcome, Script};
 use twin::board::kind::{ADSBEE_1090, ADSBEE_1090U};
@@ -18,6 +19,10 @@ const SHARES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
 const SEEDS: u64 = 10;
 /// The longest set of settings of the firmware, bytes.
 const LONGEST: usize = tests::settings_store::MAX;
+/// Cuts in the twin, unless told.
+const TWIN_CUTS: usize = 240;
+/// Lines in the log of the devices in the twin: none, and so many that the move to the other sector falls into each part.
+const TWIN_LOGS: [usize; 2] = [0, 124];
 /// Cuts that MCUboot's simulator makes in its longest test, before operations alone (as its developers publish it).
 const MCUBOOT: u64 = 17_752;
 
@@ -76,8 +81,46 @@ fn update() -> std::io::Result<bool> {
     bench.line(&format!(
         "beside it: MCUboot publishes {MCUBOOT} cuts in one test, before operations, none inside"
     ));
-    bench.finish(&all.result())?;
-    Ok(all.bricked.is_empty())
+    let (twin_cuts, twin_bricked) = in_the_twin(&mut bench);
+    let result = format!(
+        "{} twin_cuts={twin_cuts} twin_bricked={twin_bricked}",
+        all.result()
+    );
+    bench.finish(&result)?;
+    Ok(all.bricked.is_empty() && twin_bricked == 0)
+}
+
+/// The shipped images; cuts and bricked devices.
+fn in_the_twin(bench: &mut Bench) -> (usize, usize) {
+    let count = tests::number_option("--images", TWIN_CUTS);
+    let script = Images::new();
+    bench.line("");
+    bench.line("the shipped images in the twin");
+    bench.line(&format!(
+        "{:>12}{:>12}{:>12}{:>12}{:>18}{:>9}",
+        "part", "log records", "operations", "power cuts", "watchdog resets", "bricked"
+    ));
+    let (mut cuts, mut bricked) = (0, 0);
+    for records in TWIN_LOGS {
+        // The update has hundreds of operations, the others a handful.
+        for (part, share) in [(Part::Update, 4), (Part::Trial, 1), (Part::Rollback, 1)] {
+            let outcome = script.campaign(part, records, count * share / 12);
+            bench.line(&format!(
+                "{:>12}{records:>12}{:>12}{:>12}{:>18}{:>9}",
+                format!("{part:?}").to_lowercase(),
+                outcome.operations,
+                outcome.power_cuts,
+                outcome.watchdog_resets,
+                outcome.bricked.len()
+            ));
+            for device in &outcome.bricked {
+                bench.line(&format!("bricked: {device}"));
+            }
+            cuts += outcome.power_cuts + outcome.watchdog_resets;
+            bricked += outcome.bricked.len();
+        }
+    }
+    (cuts, bricked)
 }
 
 fn settings() -> std::io::Result<bool> {

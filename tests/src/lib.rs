@@ -1,6 +1,7 @@
 //! What end-to-end tests and benchmarks share: where the images and the recordings are, and how a bench reports.
 
 pub mod beast;
+pub mod boot_timing;
 pub mod clients;
 pub mod cpu_peer;
 pub mod image_peer;
@@ -11,6 +12,7 @@ pub mod power_cuts;
 pub mod processor_time;
 pub mod profile;
 pub mod reception;
+pub mod refusals;
 pub mod settings_store;
 pub mod timing;
 pub mod transcript;

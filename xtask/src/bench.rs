@@ -7,7 +7,7 @@ use std::process::Command;
 use crate::{fw, golden, peers, workspace};
 
 /// The benchmarks and what they measure.
-const BENCHES: [(&str, &str); 16] = [
+const BENCHES: [(&str, &str); 18] = [
     (
         "twin",
         "emulated MHz and share of real time: one core, two cores, two cores with capture and DMA, the image on real traffic",
@@ -58,7 +58,15 @@ const BENCHES: [(&str, &str); 16] = [
     ),
     (
         "power-cuts",
-        "on the host; --update: at every flash operation of updates and inside it, --twice; --settings: at every byte of saves, --step N, --twin, --saves N; --seeds N",
+        "on the host; --update: at every flash operation of updates and inside it, --twice, then the images in the twin, --images N; --settings: at every byte of saves, --step N, --twin, --saves N; --seeds N",
+    ),
+    (
+        "refusals",
+        "the matrix of packages that an update must refuse, with counts",
+    ),
+    (
+        "boot-timing",
+        "window, lock, first replies and stack of the bootloader in the twin, against their limits",
     ),
     (
         "cpu-peers",

@@ -71,12 +71,7 @@ fn board(id: [u8; 16]) -> Result<(), String> {
     let [bootloader, app, app_b] = link(&id, &elfs, &public)?;
     let hot = hot::check(&app)?;
     hot::check(&app_b)?;
-    let release = Release {
-        board: id,
-        version: version()?,
-        counter: SECURITY_COUNTER,
-        date: date()?,
-    };
+    let release = release(id)?;
     let slot_a = package::link(SlotName::A, &app, &release)?;
     let slot_b = package::link(SlotName::B, &app_b, &release)?;
     let signed = Package([slot_a, slot_b]).sign(&signer)?;
@@ -117,6 +112,16 @@ fn link(id: &[u8; 16], elfs: &Path, public: &str) -> Result<[elf::Image; 3], Str
         image("app", "app", ("SQUITTER_SLOT", "A"))?,
         image("app-b", "app", ("SQUITTER_SLOT", "B"))?,
     ])
+}
+
+/// What the headers of this commit's images say.
+pub fn release(board: [u8; 16]) -> Result<Release, String> {
+    Ok(Release {
+        board,
+        version: version()?,
+        counter: SECURITY_COUNTER,
+        date: date()?,
+    })
 }
 
 /// Flash and SRAM of an image.

@@ -8,6 +8,7 @@
 //! | `check` | format, lints, dependency edges |
 //! | `manual` | the AT reference, the completion of `squitter` and the firmware's list of licences, from the registry |
 //! | `size` | flash and RAM by crate and layer against the committed budget |
+//! | `reproduce` | builds the commit in two folders, or beside a package: same bytes? |
 //! | `bench` | a benchmark; its last line is `result: key=value ...` |
 //!
 //! One file a command; what commands share has a file of its own (`thumb`, `keys`, `converter`, `hot`, `workspace`); what `squitter` shares too is the
@@ -24,6 +25,7 @@ mod hot;
 mod keys;
 mod manual;
 mod peers;
+mod reproduce;
 mod size;
 mod test;
 mod thumb;
@@ -40,6 +42,7 @@ usage: cargo xtask <command>
   check                  format, lints, dependency edges
   manual                 write docs/at-commands.md, the shell completion and the list of licences, from the registry
   size                   flash and RAM by crate and layer, against xtask/size-budget.txt
+  reproduce [PACKAGE]    build the commit in two folders, or compare this checkout with a package: same bytes?
   bench <name> [--save]  run a benchmark; --save writes its table to docs/bench
 ";
 
@@ -52,6 +55,7 @@ fn main() -> ExitCode {
         ["test"] => test::run(),
         ["check"] => check::run(),
         ["manual"] => manual::run(),
+        ["reproduce", rest @ ..] => reproduce::run(rest),
         ["size"] => fw::run().and_then(|()| size::run()),
         ["bench", rest @ ..] => bench::run(rest),
         ["help" | "-h" | "--help"] => {

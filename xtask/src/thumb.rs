@@ -23,7 +23,17 @@ pub fn build(
     features: &[&str],
     environment: &[(&str, &str)],
 ) -> Result<PathBuf, String> {
-    let target = workspace::target()?;
+    build_in(&workspace::root()?, packages, features, environment)
+}
+
+/// The same for a checkout in another folder.
+pub fn build_in(
+    root: &Path,
+    packages: &[&str],
+    features: &[&str],
+    environment: &[(&str, &str)],
+) -> Result<PathBuf, String> {
+    let target = root.join("target");
     let mut command = match toolchain()? {
         Toolchain::Rustup => {
             Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
@@ -36,9 +46,9 @@ pub fn build(
             command
         }
     };
-    command.arg("build").current_dir(workspace::root()?);
+    command.arg("build").current_dir(root);
     command.envs(environment.iter().copied());
-    command.env("CARGO_ENCODED_RUSTFLAGS", nameless_paths()?);
+    command.env("CARGO_ENCODED_RUSTFLAGS", nameless_paths(root)?);
     if let Toolchain::Debian = toolchain()? {
         command.arg("-Zbuild-std=core,alloc");
     }
@@ -58,11 +68,8 @@ pub fn build(
 
 /// Compiler flags that take this machine's folders out of the images: panics name their source file, and a checkout elsewhere must give the
 /// same bytes. A crate of a registry is called by its own name and version.
-fn nameless_paths() -> Result<String, String> {
-    let mut flags = vec![format!(
-        "--remap-path-prefix={}=",
-        workspace::root()?.display()
-    )];
+fn nameless_paths(root: &Path) -> Result<String, String> {
+    let mut flags = vec![format!("--remap-path-prefix={}=", root.display())];
     let home = std::env::var_os("CARGO_HOME")
         .map(PathBuf::from)
         .or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")))

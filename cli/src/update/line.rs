@@ -6,6 +6,7 @@ use std::net::TcpStream;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use release::ymodem::Line as Bytes;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::OFlags;
 use rustix::termios::OptionalActions;
@@ -15,14 +16,8 @@ const AGAIN: Duration = Duration::from_millis(100);
 /// A write that nobody takes for so long has failed: the device takes a block of 1 KiB in a tenth of a second.
 const TAKEN_WITHIN: Duration = Duration::from_secs(10);
 
-/// Bytes both ways, and the time that passes meanwhile. The tests put a device of the twin behind it, whose time is its own.
-pub trait Line {
-    /// Sends bytes.
-    fn write(&mut self, bytes: &[u8]) -> io::Result<()>;
-    /// What has come, after at most `ms`; empty if nothing has.
-    fn read(&mut self, ms: u64) -> io::Result<Vec<u8>>;
-    /// Milliseconds since any moment.
-    fn now_ms(&self) -> u64;
+/// A line whose rate can be set. The tests put a device of the twin behind it, whose time is its own.
+pub trait Line: Bytes {
     /// From now on this rate, bits a second, where the line has one.
     fn set_baud(&mut self, baud: u32) -> io::Result<()>;
 }
@@ -154,7 +149,7 @@ fn is_patience(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }
 
-impl Line for Opened {
+impl Bytes for Opened {
     fn write(&mut self, mut bytes: &[u8]) -> io::Result<()> {
         let began = Instant::now();
         while !bytes.is_empty() {
@@ -209,7 +204,9 @@ impl Line for Opened {
     fn now_ms(&self) -> u64 {
         self.began.elapsed().as_millis() as u64
     }
+}
 
+impl Line for Opened {
     fn set_baud(&mut self, baud: u32) -> io::Result<()> {
         self.baud = baud;
         match &self.wire {

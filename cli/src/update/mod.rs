@@ -10,7 +10,6 @@ mod find;
 mod line;
 mod progress;
 mod talk;
-mod ymodem;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -18,12 +17,12 @@ use std::process::ExitCode;
 use boot_contract::boot_log::SlotName;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use release::package::Package;
+use release::ymodem::{self, Stopped};
 
 use crate::Failure;
 use line::{Opened, Place};
 use progress::Progress;
 use talk::{FIXED_BAUD, State, Talk, Told};
-use ymodem::Stopped;
 
 /// How long a device may take to come to its bootloader, ms: a restart, a USB host that finds it, and two attempts.
 const ENTER_MS: u64 = 30_000;

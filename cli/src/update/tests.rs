@@ -6,6 +6,7 @@ use twin::board::Board;
 
 use super::line::Line;
 use super::*;
+use release::ymodem::Line as Bytes;
 
 /// Time the board runs between two looks, ms.
 const STEP_MS: u64 = 1;
@@ -52,7 +53,7 @@ impl Wire {
     }
 }
 
-impl Line for Wire {
+impl Bytes for Wire {
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         for byte in bytes {
             self.sent += 1;
@@ -84,7 +85,9 @@ impl Line for Wire {
     fn now_ms(&self) -> u64 {
         (self.board.seconds() * 1000.0) as u64
     }
+}
 
+impl Line for Wire {
     fn set_baud(&mut self, _: u32) -> io::Result<()> {
         // The far end of the twin's UART follows the device.
         Ok(())

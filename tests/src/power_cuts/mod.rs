@@ -9,6 +9,7 @@
 
 pub mod device;
 pub mod flash;
+pub mod in_twin;
 pub mod release;
 pub mod settings;
 

@@ -4,7 +4,15 @@
 
 use boot_core::ymodem::{ACK, CAN, EOT, MOST_DATA, NAK, SOH, STX, crc16};
 
-use super::line::Line;
+/// Bytes both ways, and the time that passes meanwhile.
+pub trait Line {
+    /// Sends bytes.
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<()>;
+    /// What has come, after at most `ms`; empty if nothing has.
+    fn read(&mut self, ms: u64) -> std::io::Result<Vec<u8>>;
+    /// Milliseconds since any moment.
+    fn now_ms(&self) -> u64;
+}
 
 /// How long the receiver may take to invite, ms: it does so every second.
 const INVITED_WITHIN_MS: u64 = 10_000;
@@ -18,19 +26,38 @@ const SHORT: usize = 128;
 const FILL: u8 = 0x1A;
 
 /// Why a file did not get across.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug)]
 pub enum Stopped {
-    #[error("the port failed: {0}")]
-    Port(#[from] std::io::Error),
-    #[error("the device does not ask for the file")]
+    /// The line failed.
+    Port(std::io::Error),
+    /// The receiver does not ask for the file.
     NotInvited,
-    /// With what it said behind its good-bye, as far as that came already.
-    #[error("the device cancelled")]
+    /// The receiver cancelled, with what it said behind its good-bye, as far as that came already.
     Cancelled(Vec<u8>),
-    #[error("the device does not answer")]
+    /// The receiver does not answer.
     Silent,
-    #[error("block {0} did not get across in {MOST_TRIES} tries")]
+    /// This block did not get across in [`MOST_TRIES`] tries.
     Errors(usize),
+}
+
+impl From<std::io::Error> for Stopped {
+    fn from(cause: std::io::Error) -> Self {
+        Stopped::Port(cause)
+    }
+}
+
+impl std::fmt::Display for Stopped {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Stopped::Port(cause) => write!(f, "the port failed: {cause}"),
+            Stopped::NotInvited => f.write_str("the device does not ask for the file"),
+            Stopped::Cancelled(_) => f.write_str("the device cancelled"),
+            Stopped::Silent => f.write_str("the device does not answer"),
+            Stopped::Errors(block) => {
+                write!(f, "block {block} did not get across in {MOST_TRIES} tries")
+            }
+        }
+    }
 }
 
 /// Sends `bytes` as a file of this name; `progress` is told the bytes acknowledged.
