@@ -8,8 +8,8 @@
 //! Signatures and header keys are not compared: only the releaser has the key.
 
 use crate::{fw, keys, thumb, workspace};
-use boot_contract::boot_log::SlotName;
 use boot_contract::BOARDS;
+use boot_contract::boot_log::SlotName;
 use boot_contract::flash_map::{BOOTLOADER_END, IMAGE_MAX, XIP_BASE};
 use release::flash_image::contiguous;
 use release::keys::hex;

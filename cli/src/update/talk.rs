@@ -3,8 +3,8 @@
 //! | state | told by | the way to the bootloader |
 //! |---|---|---|
 //! | BOOTLOADER | `AT+BOOT?` is answered `AT+BOOT=1` | `AT+LOCK=1` |
-//! | RUN, on CONSOLE | … `+BOOT=0`, of older firmware `ERROR …` | `AT+REBOOT_BOOTLOADER` |
-//! | CONFIGURATION | … `AT+ERROR (…)` or `AT+BOOT=0` | `AT+REBOOT_BOOTLOADER` |
+//! | RUN, on CONSOLE | … `+BOOT=0`, by older firmware `ERROR …` | `AT+REBOOT_BOOTLOADER` |
+//! | CONFIGURATION | … `AT+BOOT=0` or `AT+ERROR (…)` | `AT+REBOOT_BOOTLOADER` |
 //! | RUN, on COMMS_UART | … nothing | `AT+CONFIG=1`, then as in CONFIGURATION |
 //!
 //! Reports may stand between the answers, binary ones too: an answer is looked for by its words, wherever they stand.
@@ -85,15 +85,9 @@ impl Talk<'_> {
         for _ in 0..SILENT_AFTER {
             self.line.write(CANCEL)?;
             let said = self.ask("AT+BOOT?", &["+BOOT="], ANSWER_MS)?;
-            if said.contains("AT+BOOT=1") {
-                return Ok(State::Bootloader);
-            }
-            if said.contains("AT+BOOT=0") || said.contains("AT+ERROR (") {
-                return Ok(State::Configuration);
-            }
-            // The other dialect; firmware before it had the command refused it.
-            if said.contains("+BOOT=0") || said.contains("ERROR ") {
-                return Ok(State::Run);
+            let state = state(&said);
+            if state != State::Silent {
+                return Ok(state);
             }
         }
         Ok(State::Silent)
@@ -186,6 +180,19 @@ impl Talk<'_> {
     }
 }
 
+/// What the answer to `AT+BOOT?` means.
+fn state(said: &str) -> State {
+    if said.contains("AT+BOOT=1") {
+        State::Bootloader
+    } else if said.contains("AT+BOOT=0") || said.contains("AT+ERROR (") {
+        State::Configuration
+    } else if said.contains("+BOOT=0") || said.contains("ERROR ") {
+        State::Run
+    } else {
+        State::Silent
+    }
+}
+
 /// What stands between two marks.
 fn between<'a>(text: &'a str, from: &str, to: &str) -> Option<&'a str> {
     let (_, rest) = text.split_once(from)?;
@@ -211,6 +218,21 @@ fn told(said: &str) -> Option<Told> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_state_is_told_by_the_dialect_of_the_answer() {
+        for (said, expected) in [
+            ("AT+BOOT=1\r\n", State::Bootloader),
+            ("AT+ERROR (no image)\r\nAT+BOOT=1\r\n", State::Bootloader),
+            ("AT+BOOT=0\r\n", State::Configuration),
+            ("AT+ERROR (unknown command)\r\n", State::Configuration),
+            ("#A:1,2\r\n+BOOT=0\r\n", State::Run),
+            ("ERROR unknown command, AT+HELP lists them\r\n", State::Run),
+            ("*8D4840D6202CC371C32CE0576098;\r\n", State::Silent),
+        ] {
+            assert_eq!(state(said), expected, "{said}");
+        }
+    }
 
     #[test]
     fn what_a_device_tells_is_found_among_its_reports() {
