@@ -1,7 +1,6 @@
 //! Power cuts on the host: through updates, by the bootloader's own code over a flash that tears; through saves of settings, by the firmware's store over
 //! an EEPROM and a flash that tear.
 
-use tests::power_cuts::in_twin::{self, Part};
 use tests::power_cuts::settings::{self, Found, keeper::Keeper, memory::Kind};
 use tests::power_cuts::{Outcome, Script, log_lengths};
 
@@ -47,18 +46,5 @@ fn no_cut_of_a_save_loses_or_mixes_settings() {
         assert_eq!(all.second_cuts, all.cuts);
         assert!(all.cuts >= LEAST_CUTS / 2, "{} cuts", all.cuts);
         assert!(all.new > 0 && all.new < all.cuts / 10, "{} new", all.new);
-    }
-}
-
-/// The short form of the bench's second table.
-#[test]
-fn no_cut_and_no_watchdog_reset_bricks_the_shipped_images() {
-    let script = in_twin::Script::new();
-    for (part, cuts) in [(Part::Update, 4), (Part::Trial, 4), (Part::Rollback, 4)] {
-        let outcome = script.campaign(part, 124, cuts);
-        println!("{part:?}: {outcome:?}");
-        assert_eq!(outcome.bricked, Vec::<String>::new(), "{part:?}");
-        assert_eq!(outcome.power_cuts + outcome.watchdog_resets, cuts);
-        assert!(outcome.watchdog_resets > 0 && outcome.operations >= 2);
     }
 }
