@@ -277,7 +277,11 @@ impl Receiver {
     }
 
     fn leave_soon(&mut self, leave: Leave) {
-        self.leave = Some((timer::now_us() + REBOOT_AFTER_US, leave));
+        // Asked again it does not take longer.
+        let at_us = self
+            .leave
+            .map_or(timer::now_us() + REBOOT_AFTER_US, |(at_us, _)| at_us);
+        self.leave = Some((at_us, leave));
     }
 
     /// Leaves if asked to and due.

@@ -13,6 +13,8 @@ use super::line::Line;
 
 /// Rate of the bootloader and of CONFIGURATION, bits a second.
 pub const FIXED_BAUD: u32 = 115_200;
+/// Behind its answer a firmware takes 100 ms to restart, ms.
+const RESTART_MS: u64 = 300;
 /// What a start without stored settings says before `AT+RUN_START`.
 const MISSING_SETTINGS: &str = "AT+ERROR (Settings missing, loaded default)\r\n";
 /// How long an answer may take, ms: a line of a report may have to leave first.
@@ -111,6 +113,7 @@ impl Talk<'_> {
                 }
                 State::Run | State::Configuration => {
                     self.ask("AT+REBOOT_BOOTLOADER", &["OK"], ANSWER_MS)?;
+                    self.wait(RESTART_MS)?;
                     self.line.set_baud(FIXED_BAUD)?;
                 }
                 State::Silent => {
