@@ -76,7 +76,7 @@ impl Device for Receiver {
     }
 
     fn trigger_levels(&mut self) -> Result<(Option<u16>, u16), Failure> {
-        Err("not read back yet")
+        Ok((None, self.air.read_mv()))
     }
 
     fn usb_drive_allowed(&mut self) -> &mut bool {
@@ -170,9 +170,9 @@ impl Receiver {
             self.tracker.set_rx_position(rx_position(&new));
         }
         self.hardware.set_trigger_level_low(new.tl_lo_mv);
-        if new.tl_hi_mv != old.tl_hi_mv {
-            // The PWM's error type is empty.
-            let _ = self.trigger_level.set_mv(new.tl_hi_mv);
+        let level = |set: &Settings| (set.tl_mode, set.tl_lo_mv, set.tl_hi_mv);
+        if level(&new) != level(old) {
+            self.air.follow(&new);
         }
     }
 

@@ -6,8 +6,8 @@
 //! ```
 //! Everything here, and all it calls, is placed in SRAM by `linker/app.x`; interrupts stay masked.
 
-use core::sync::atomic::{AtomicU32, Ordering};
-use demod::{Counters, Demodulator, RING_WORDS, RawFrame, SampleRing};
+use core::sync::atomic::{AtomicI32, AtomicU32, Ordering};
+use demod::{Counters, Demodulator, RING_WORDS, RawFrame, Rings};
 use drivers::pulse_capture::PulseCapture;
 use heapless::spsc::Producer;
 
@@ -38,9 +38,11 @@ impl QueueCounters {
 /// What core 1 owns.
 pub struct Context {
     pub capture: PulseCapture<RING_WORDS>,
-    pub ring: &'static SampleRing,
+    pub rings: Rings<'static>,
     pub demodulator: Demodulator,
     pub demod_counters: &'static Counters,
+    /// The noise at the antenna as core 0 measures it, 1/100 dBm.
+    pub floor_cdbm: &'static AtomicI32,
     pub queue: Producer<'static, RawFrame>,
     pub queue_counters: &'static QueueCounters,
     /// Microseconds this core slept.
@@ -71,15 +73,19 @@ fn block(context: &mut Context) {
         .idle_us
         .store(idle_us.wrapping_add(slept_us), Ordering::Relaxed);
     let Context {
-        ring,
+        capture,
+        rings,
         demodulator,
         demod_counters,
+        floor_cdbm,
         queue,
         queue_counters,
         ..
     } = context;
+    demodulator.set_floor(floor_cdbm.load(Ordering::Relaxed) as i16);
     let mut heard = false;
-    demodulator.run(ring, written, demod_counters, &mut |frame| {
+    let mut newest = || capture.written();
+    demodulator.run(*rings, written, demod_counters, &mut newest, &mut |frame| {
         heard = true;
         count(&queue_counters.offered);
         match queue.enqueue(frame) {

@@ -13,12 +13,11 @@
 //! Settings are loaded before the first frame and acted on (`commands`); the states RUN and CONFIGURATION are `state`'s.
 //!
 //! How the image ended is kept over the reset and told by `AT+INFO` (`crash`).
-//!
-//! Not here yet: automatic trigger level.
 #![no_std]
 #![no_main]
 #![forbid(unsafe_code)]
 
+mod air;
 mod clock;
 mod commands;
 mod confirm;
@@ -38,14 +37,17 @@ mod station;
 mod stats;
 mod store;
 
+use air::Air;
 use boot_contract::hand_over::{Cause, HandOver};
 use clock::Clock;
 use confirm::{Confirm, Due};
 use console::Inputs;
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::sync::atomic::{AtomicI32, AtomicU32, Ordering};
 use core1::{Context, QUEUE_SLOTS, QueueCounters};
 use crash::Crash;
-use demod::{Counters, Demodulator, RawFrame, SampleRing};
+use demod::{
+    ArrivalRing, Calibration, Counters, Demodulator, LevelRing, RawFrame, Rings, SampleRing,
+};
 use drivers::led::Led;
 use drivers::pulse_capture::{CaptureCounters, PulseCapture};
 use drivers::trigger_level::{self, TriggerLevel};
@@ -76,9 +78,13 @@ const LOOK_US: u64 = 5_000;
 const _: () = assert!(TRIGGER_LEVEL_PERIOD == trigger_level::PERIOD);
 
 static RING: SampleRing = SampleRing::new();
+static ARRIVAL_RING: ArrivalRing = ArrivalRing::new();
+static LEVEL_RING: LevelRing = LevelRing::new();
 static QUEUE: TakeOnce<Queue<RawFrame, QUEUE_SLOTS>> = TakeOnce::new(Queue::new());
 static CORE1: TakeOnce<Option<Context>> = TakeOnce::new(None);
 static TRACKER: TakeOnce<Tracker<AIRCRAFT>> = TakeOnce::new(Tracker::new());
+/// The noise at the antenna, 1/100 dBm: core 0 measures, core 1 uses it.
+static FLOOR_CDBM: AtomicI32 = AtomicI32::new(Calibration::ADSBEE_1090.floor_cdbm as i32);
 static SHARED: SharedCounters = SharedCounters {
     capture: CaptureCounters::new(),
     demod: Counters::new(),
@@ -117,7 +123,7 @@ fn start() -> Option<core::convert::Infallible> {
     let loaded = commands::load(&mut store);
     let settings_trouble = loaded.err();
     // A PWM that cannot be set is not a thing on this chip: the error type is empty.
-    let mut trigger_level = TriggerLevel::new(parts.trigger_level).ok()?;
+    let trigger_level = TriggerLevel::new(parts.trigger_level).ok()?;
     let console = parts.usb.attach()?;
 
     let stored = loaded.unwrap_or(Stored::FACTORY);
@@ -126,21 +132,35 @@ fn start() -> Option<core::convert::Infallible> {
     let gnss = parts.gnss.map(|gnss| gnss.start(gnss_baud));
     let (producer, consumer) = QUEUE.take()?.split();
     let capture_start_us = timer::now_us();
-    let capture =
-        PulseCapture::start(parts.sampler, parts.dma, &RING.words, &SHARED.capture).ok()?;
+    let capture = PulseCapture::start(
+        parts.sampler,
+        &mut parts.converter,
+        parts.dma,
+        &RING.words,
+        &ARRIVAL_RING.words,
+        &LEVEL_RING.words,
+        &SHARED.capture,
+    )
+    .ok()?;
     let context = CORE1.take()?;
     *context = Some(Context {
         capture,
-        ring: &RING,
-        demodulator: Demodulator::new(),
+        rings: Rings {
+            samples: &RING,
+            arrival: &ARRIVAL_RING,
+            level: &LEVEL_RING,
+        },
+        demodulator: Demodulator::new(Calibration::ADSBEE_1090),
         demod_counters: &SHARED.demod,
+        floor_cdbm: &FLOOR_CDBM,
         queue: producer,
         queue_counters: &SHARED.queue,
         idle_us: &SHARED.core1_idle_us,
     });
     let mut wakes = parts.core1.launch(context, core1::run);
 
-    trigger_level.set_mv(stored.settings.tl_hi_mv).ok()?;
+    let mut air = Air::new(parts.converter, trigger_level, &RING, &LEVEL_RING);
+    air.follow(&stored.settings);
     let confirm = Confirm::new(parts.flash);
     let is_held = hardware.is_config_held();
     let mut receiver = Receiver {
@@ -171,7 +191,6 @@ fn start() -> Option<core::convert::Infallible> {
         board: identity::board(&confirm),
         serial: identity::serial(parts.unique_id),
         confirm,
-        trigger_level,
         crash: Crash::at_start(cause),
         is_usb_drive_allowed: false,
         told: log::Told::default(),
@@ -179,6 +198,7 @@ fn start() -> Option<core::convert::Infallible> {
         settings_trouble,
         hardware,
         stored,
+        air,
     };
     receiver.act_on_all();
     let mut input = Inputs::new();
@@ -203,6 +223,9 @@ fn start() -> Option<core::convert::Infallible> {
         if now_us >= next_beat_us {
             receiver.see_pin();
             led.mark(receiver.marks());
+            if let Some(floor_cdbm) = receiver.look() {
+                FLOOR_CDBM.store(i32::from(floor_cdbm), Ordering::Relaxed);
+            }
             led.beat(receiver.shows());
             next_beat_us = next_beat(now_us, capture_start_us);
             let stalled_ms = (now_us - block_seen_us) / 1000;

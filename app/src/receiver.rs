@@ -8,6 +8,7 @@
 //! ```
 //! Time here is milliseconds of uptime, counted from the first sample, which is the zero of the frames' ticks too.
 
+use crate::air::Air;
 use crate::clock::Clock;
 use crate::confirm::Confirm;
 use crate::console::Inputs;
@@ -25,8 +26,7 @@ use boot_contract::hand_over::{Cause, HandOver};
 use core::sync::atomic::{AtomicU32, Ordering};
 use demod::RawFrame;
 use drivers::pulse_capture::CaptureCounters;
-use drivers::trigger_level::TriggerLevel;
-use hal::board::{LED_GPIO, TriggerLevelPwm};
+use hal::board::LED_GPIO;
 use hal::{boot, timer, watchdog};
 use heapless::spsc::Consumer;
 use mode_s::Message;
@@ -69,7 +69,6 @@ pub struct Receiver {
     pub station: Station,
     /// Loads of the cores.
     pub load: Load,
-    pub trigger_level: TriggerLevel<TriggerLevelPwm>,
     pub clock: Clock,
     pub queue: Consumer<'static, RawFrame>,
     pub tracker: &'static mut Tracker<AIRCRAFT>,
@@ -97,6 +96,7 @@ pub struct Receiver {
     pub board: Text,
     /// The flash part's unique id.
     pub serial: Text,
+    pub air: Air,
     /// The last one since power-on.
     pub crash: Option<Crash>,
     /// Whether `AT+BOOT_USB_UF2` may be obeyed: never from the start.
@@ -167,10 +167,14 @@ impl Receiver {
             heard();
             let message = Message::decode(&raw_frame.frame);
             self.decode.count(message.parity);
+            let quality_cdb = match (raw_frame.level, self.air.floor_cdbm()) {
+                (Some(level), Some(floor)) => Some(level.saturating_sub(floor).max(0)),
+                _ => None,
+            };
             let heard = Heard {
                 at_ms: raw_frame.arrival / TICKS_PER_MS,
                 level_cdbm: raw_frame.level,
-                quality_cdb: None,
+                quality_cdb,
                 is_repaired: raw_frame.repaired() != 0,
             };
             self.tracker.on_frame(&raw_frame.frame, &message, heard);
@@ -178,14 +182,25 @@ impl Receiver {
             let report = FrameReport {
                 bits: Bits::ModeS(&received),
                 level_cdbm: raw_frame.level,
-                quality_cdb: None,
-                times: self.clock.times(raw_frame.arrival),
+                quality_cdb,
+                // To the nearest tick.
+                times: self
+                    .clock
+                    .times(raw_frame.arrival + u64::from(raw_frame.arrival_parts >> 7)),
             };
             let context = context!(self, now);
             self.console.frame(&report, true, &context);
             self.comms.frame(&report, true, &context);
         }
         self.queue.ready()
+    }
+
+    /// A look at the air: noise floor and trigger level. Gives the floor, 1/100 dBm.
+    pub fn look(&mut self) -> Option<i16> {
+        let words = self.shared.capture.words.load(Ordering::Relaxed);
+        let frames = self.shared.queue.offered.load(Ordering::Relaxed);
+        self.air.look(words, frames);
+        self.air.floor_cdbm()
     }
 
     /// Begins a second when it is time; goes on with the bursts. Returns whether there is more to send at once.
@@ -322,6 +337,9 @@ impl Receiver {
             confirmed: self.confirm.is_confirmed(),
             capture: &self.shared.capture,
             demod: &self.shared.demod,
+            air: self.air.seen,
+            floor_cdbm: self.air.floor_cdbm(),
+            trigger_mv: self.air.levels_mv(),
             queue: &self.shared.queue,
             queue_waiting: self.queue.len(),
             decode: &self.decode,

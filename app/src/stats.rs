@@ -3,6 +3,7 @@
 //! ```text
 //!   +STATS=DEVICE,uptime_s=..,start=..,slot=..,image=..   why this start happened, what runs
 //!   +STATS=CAPTURE,blocks=..,words=..,..        128 us a block
+//!   +STATS=AIR,high_permille=..,crossings=..,.. what the samples look like, trigger level, noise floor
 //!   +STATS=DEMOD,words=..,candidates=..,..      candidates = one outcome each, see services/demod
 //!   +STATS=TRIALS,trials_exact=..,..            parity checks by kind: what chance had
 //!   +STATS=QUEUE,offered=..,queued=..,dropped=..,waiting=..
@@ -28,6 +29,7 @@
 //!
 //! All counters are 32 bits and wrap.
 
+use crate::air::Seen;
 use crate::core1::QueueCounters;
 use crate::store::Trouble;
 use boot_contract::boot_log::SlotName;
@@ -59,6 +61,9 @@ pub struct Stats<'a> {
     pub confirmed: bool,
     pub capture: &'a CaptureCounters,
     pub demod: &'a demod::Counters,
+    pub air: Seen,
+    pub floor_cdbm: Option<i16>,
+    pub trigger_mv: (u16, u16),
     pub queue: &'a QueueCounters,
     pub queue_waiting: usize,
     pub decode: &'a DecodeCounters,
@@ -143,6 +148,23 @@ impl Stats<'_> {
                 ("fifo_overflows", value(&self.capture.fifo_overflows)),
             ],
         ));
+        out(line(
+            "AIR",
+            &[
+                ("high_permille", self.air.high_permille),
+                ("crossings", self.air.crossings_a_second),
+                ("trigger_lo", u32::from(self.trigger_mv.0)),
+                ("trigger_hi", u32::from(self.trigger_mv.1)),
+                ("learn_steps", self.air.steps),
+            ],
+        )
+        .and_then(|mut line| {
+            write!(line, ",noise_dbm=")?;
+            if let Some(floor) = self.floor_cdbm {
+                write!(line, "{}", report::whole_decibels(floor))?;
+            }
+            Ok(line)
+        }));
         let demod = self.demod.snapshot();
         out(line("DEMOD", &demod.stages()));
         out(line("TRIALS", &demod.trials()));

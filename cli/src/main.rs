@@ -12,6 +12,7 @@ mod hardware;
 mod instruments;
 mod json;
 mod keys;
+mod levels;
 mod live;
 mod output;
 mod ports;

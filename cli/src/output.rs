@@ -33,7 +33,7 @@ impl ValueEnum for Form {
     fn to_possible_value(&self) -> Option<PossibleValue> {
         Some(match self {
             Form::Hex => PossibleValue::new("hex")
-                .help("<seconds>,<hex>,<dBm>,<repaired bits>; dBm is empty while not measured"),
+                .help("<seconds>,<hex>,<dBm>,<repaired bits>; dBm is empty where not measured"),
             Form::Beast => PossibleValue::new("beast").help("Mode S Beast, binary"),
             Form::Csbee => PossibleValue::new("csbee").help("CSBee lines, once a second"),
             Form::Json => PossibleValue::new("json")
@@ -59,6 +59,8 @@ pub struct Heard {
     pub count: i64,
     pub frame: Frame,
     pub repaired: u8,
+    /// Level at the antenna, whole dBm.
+    pub level_dbm: Option<i32>,
 }
 
 impl Heard {
@@ -114,7 +116,15 @@ impl<W: Write> Printer<W> {
             Form::Hex => {
                 let sign = if ns < 0 { "-" } else { "" };
                 let (s, frac) = (ns.abs() / 1_000_000_000, ns.abs() % 1_000_000_000);
-                writeln!(self.out, "{sign}{s}.{frac:09},{hex},,{}", heard.repaired)
+                let level = heard
+                    .level_dbm
+                    .map(|dbm| dbm.to_string())
+                    .unwrap_or_default();
+                writeln!(
+                    self.out,
+                    "{sign}{s}.{frac:09},{hex},{level},{}",
+                    heard.repaired
+                )
             }
             Form::Beast => {
                 let mut buffer = [0; beast::MAX_MESSAGE];

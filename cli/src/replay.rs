@@ -11,6 +11,7 @@ use twin::source::PRE_ROLL_PS;
 
 use crate::beast;
 use crate::instruments::{self, Instruments};
+use crate::levels::Levels;
 use crate::output::{self, Form, Heard, Printer};
 use crate::{Failure, device, radio};
 
@@ -78,12 +79,15 @@ fn by_native(
     };
     let mut failed = None;
     let counters = native::run(source.as_mut(), options, &mut |raw| {
-        let stamp = (raw.arrival + report::beast::STAMP_AFTER_ARRIVAL_TICKS)
-            / report::beast::TICKS_PER_COUNT;
+        // As the device stamps it: from the nearest tick.
+        let arrival = raw.arrival + u64::from(raw.arrival_parts >> 7);
+        let stamp =
+            (arrival + report::beast::STAMP_AFTER_ARRIVAL_TICKS) / report::beast::TICKS_PER_COUNT;
         let heard = Heard {
             count: stamp as i64 - start,
             frame: raw.frame,
             repaired: raw.repaired(),
+            level_dbm: raw.level.map(report::whole_decibels),
         };
         if failed.is_none() {
             failed = printer.frame(&heard).err();
@@ -114,7 +118,11 @@ fn by_twin(
     let mut board = device::start(matches)?;
     device::command(&mut board, &format!("AT+BAUDRATE=COMMS_UART,{BAUD}"))?;
     device::command(&mut board, "AT+PROTOCOL=COMMS_UART,BEAST")?;
-    let console = if form == Form::Csbee { "CSBEE" } else { "NONE" };
+    let console = match form {
+        Form::Csbee => "CSBEE",
+        Form::Hex => "RAW",
+        Form::Beast | Form::Json => "NONE",
+    };
     device::command(&mut board, &format!("AT+PROTOCOL=CONSOLE,{console}"))?;
     board.run_ms(5)?;
     board.comms_read();
@@ -126,6 +134,7 @@ fn by_twin(
     let start = output::start_count(playback.start_tick, PRE_ROLL_PS);
     let mut reader = beast::Reader::default();
     let mut completed = Completed::default();
+    let mut levels = Levels::default();
     let mut left = TAIL_MS;
     let mut tables = None;
     while left > 0 {
@@ -143,16 +152,16 @@ fn by_twin(
             Form::Csbee => printer.bytes(&said)?,
             Form::Beast => printer.bytes(&comms)?,
             Form::Hex | Form::Json => {
-                for message in reader.read(&comms) {
-                    let (frame, repaired) = completed.complete(&message.frame);
-                    printer.frame(&Heard {
-                        count: message.stamp as i64 - start,
-                        frame,
-                        repaired,
-                    })?;
+                levels.console(&said);
+                levels.beast(reader.read(&comms));
+                while let Some((message, level)) = levels.next_of(form) {
+                    printer.frame(&heard(&mut completed, &message, level, start))?;
                 }
             }
         }
+    }
+    for message in levels.rest() {
+        printer.frame(&heard(&mut completed, &message, None, start))?;
     }
     if let Some(tables) = tables {
         eprint!("{tables}");
@@ -161,7 +170,7 @@ fn by_twin(
     if matches.get_flag("stats") || matches.get_flag("uninitialised") {
         eprint!("{told}");
     }
-    if form == Form::Csbee {
+    if matches!(form, Form::Csbee | Form::Hex) {
         device::command(&mut board, "AT+PROTOCOL=CONSOLE,NONE")?;
     }
     let stats = device::query(&mut board, "AT+STATS?")?;
@@ -171,4 +180,20 @@ fn by_twin(
         }
     }
     Ok(stats.replace("\r\n", "\n"))
+}
+
+/// A Beast message of the device as the receiver believed it; `start` is the count at which the recording began.
+fn heard(
+    completed: &mut Completed,
+    message: &beast::Received,
+    level_dbm: Option<i32>,
+    start: i64,
+) -> Heard {
+    let (frame, repaired) = completed.complete(&message.frame);
+    Heard {
+        count: message.stamp as i64 - start,
+        frame,
+        repaired,
+        level_dbm,
+    }
 }

@@ -49,7 +49,15 @@ fn replayed(engine: &str) -> String {
 #[test]
 fn both_engines_print_the_same_frames_and_at_least_what_dump1090_finds() {
     let (twin, native) = (replayed("twin"), replayed("native"));
-    let differs = twin.lines().zip(native.lines()).position(|(t, n)| t != n);
+    // Time, bits and repaired bits are the same; the converter's start is a tick or two later in one boot than in another, so the level is not asked here.
+    let told = |line: &str| {
+        let fields: Vec<&str> = line.split(',').collect();
+        [fields[0], fields[1], fields[3]].map(str::to_string)
+    };
+    let differs = twin
+        .lines()
+        .zip(native.lines())
+        .position(|(t, n)| told(t) != told(n));
     assert_eq!(
         differs,
         None,
@@ -62,7 +70,7 @@ fn both_engines_print_the_same_frames_and_at_least_what_dump1090_finds() {
         .lines()
         .map(|l| l.split(',').nth(1).expect("a hex column"))
         .collect();
-    assert!(frames.len() >= 284, "{} frames", frames.len());
+    assert!(frames.len() >= 343, "{} frames", frames.len());
     for hex in frames {
         let bits = u8::from_str_radix(&hex[..2], 16).expect("hexadecimal");
         if matches!(bits >> 3, 11 | 17) {

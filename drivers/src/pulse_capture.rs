@@ -8,6 +8,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 use hal::dma_ring::{DmaChannels, DmaRing, Misplaced};
+use hal::level_converter::LevelConverter;
 use hal::pio_sampler::{PioSampler, US_PER_WORD};
 use hal::timer;
 
@@ -49,16 +50,19 @@ pub struct PulseCapture<const N: usize> {
 }
 
 impl<const N: usize> PulseCapture<N> {
-    /// Arms the ring, then starts the sampler: the ring's first word holds the first samples.
-    pub fn start(
+    /// Arms the rings, then starts samplers and converter: each ring's first word holds the first samples.
+    pub fn start<const A: usize, const L: usize>(
         mut sampler: PioSampler,
+        converter: &mut LevelConverter,
         channels: DmaChannels,
         words: &'static [AtomicU32; N],
+        arrival: &'static [AtomicU32; A],
+        level: &'static [AtomicU32; L],
         counters: &'static CaptureCounters,
     ) -> Result<Self, Misplaced> {
-        let ring = DmaRing::arm(channels, words)?;
+        let ring = DmaRing::arm(channels, words, arrival, level)?;
         let start_us = timer::now_us_low();
-        sampler.start();
+        sampler.start(converter);
         let clock = WordClock::new(start_us);
         Ok(Self {
             sampler,
@@ -77,9 +81,7 @@ impl<const N: usize> PulseCapture<N> {
     #[inline]
     pub fn wait(&mut self) -> u64 {
         self.ring.wait_block();
-        // Position first: the time read after it is at most late, which the clock tolerates by 4 ms.
-        let position = self.ring.position();
-        let written = self.clock.advance(position, timer::now_us_low());
+        let written = self.written();
         let counters = self.counters;
         count(&counters.blocks, 1);
         counters.words.store(written as u32, Ordering::Relaxed);
@@ -87,6 +89,14 @@ impl<const N: usize> PulseCapture<N> {
             count(&counters.fifo_overflows, 1);
         }
         written
+    }
+
+    /// Words written since the start, now.
+    #[inline]
+    pub fn written(&mut self) -> u64 {
+        // Position first: the time read after it is at most late, which the clock tolerates by 4 ms.
+        let position = self.ring.position();
+        self.clock.advance(position, timer::now_us_low())
     }
 }
 

@@ -1,4 +1,4 @@
-//! A ring in SRAM that DMA fills for ever.
+//! Rings in SRAM that DMA fills for ever.
 //!
 //! The chip's DMA has no endless mode: a count of 2^32 words at 4 us is 4.8 hours, and then silence. So the end of the count is
 //! made the ordinary case:
@@ -9,6 +9,12 @@
 //!        ▼                                                         │ trigger
 //!   channel 1 (control)   one word, 32 ─▶ channel 0's AL1_TRANS_COUNT_TRIG
 //! ```
+//! | stream | channels | from | words | a word every |
+//! |---|---|---|---|---|
+//! | samples | 0, 1 | PIO0 RX0 | 2048 | 4 µs; its blocks raise DMA_IRQ_1 |
+//! | arrival | 2, 3 | PIO0 RX1 | 4096 | 1.867 µs |
+//! | level | 4, 5 | ADC FIFO | 2048 | 2.271 µs |
+//!
 //! The write address is never rewritten, so it stays the one truth of how far the ring is. Between two blocks the PIO's FIFO
 //! holds the samples: the chain takes tens of cycles, the FIFO lasts 3 840.
 
@@ -17,17 +23,19 @@ use rp2040_hal::pac;
 
 /// Words a block: one interrupt every 128 us at 4 us a word.
 pub const BLOCK_WORDS: u32 = 32;
+/// Data channel of the samples: its blocks wake core 1.
 const DATA: usize = 0;
-const CONTROL: usize = 1;
-/// TREQ of PIO0's RX FIFO 0 (RP2040 datasheet, 2.5.3.1).
+/// TREQ of PIO0's RX FIFOs 0 and 1, and of the ADC's FIFO (RP2040 datasheet, 2.5.3.1).
 const TREQ_PIO0_RX0: u8 = 4;
+const TREQ_PIO0_RX1: u8 = 5;
+const TREQ_ADC: u8 = 36;
 /// TREQ "permanent": as fast as possible.
 const TREQ_PERMANENT: u8 = 0x3F;
 
 /// What the control channel writes into the data channel's count. In SRAM, because a DMA read from XIP would stall while flash is erased.
 static BLOCK_RELOAD: AtomicU32 = AtomicU32::new(BLOCK_WORDS);
 
-/// A running ring of `N` words.
+/// The running ring of samples, `N` words.
 pub struct DmaRing<const N: usize> {
     dma: pac::DMA,
     base: u32,
@@ -37,57 +45,50 @@ pub struct DmaRing<const N: usize> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Misplaced;
 
-/// The two DMA channels before they have a ring.
+/// The DMA channels before they have rings.
 pub struct DmaChannels {
     pub(crate) dma: pac::DMA,
 }
 
+/// Where a stream comes from and the first of its two channels.
+struct Stream {
+    data: usize,
+    treq: u8,
+    source: u32,
+}
+
 impl<const N: usize> DmaRing<N> {
-    /// Points both channels at the ring and arms them: each word the sampler pushes from now on lands in the ring.
-    pub fn arm(channels: DmaChannels, words: &'static [AtomicU32; N]) -> Result<Self, Misplaced> {
-        let base = words.as_ptr() as u32;
-        let bytes = (N * 4) as u32;
-        if !N.is_power_of_two() || !(8..=1 << 15).contains(&bytes) || base & (bytes - 1) != 0 {
-            return Err(Misplaced);
-        }
+    /// Points the channels at the rings and arms them: each word that a sampler or the converter pushes from now on lands in its ring.
+    pub fn arm<const A: usize, const L: usize>(
+        channels: DmaChannels,
+        samples: &'static [AtomicU32; N],
+        arrival: &'static [AtomicU32; A],
+        level: &'static [AtomicU32; L],
+    ) -> Result<Self, Misplaced> {
         let dma = channels.dma;
-        // SAFETY: the source is a FIFO register, the target a static ring whose address bits above its size never change
-        // (RING_SIZE, alignment checked above); the words are atomics, so the hardware's writes are no data race.
-        unsafe {
-            let data = dma.ch(DATA);
-            data.ch_read_addr()
-                .write(|w| w.bits((*pac::PIO0::ptr()).rxf(0).as_ptr() as u32));
-            data.ch_write_addr().write(|w| w.bits(base));
-            data.ch_trans_count().write(|w| w.bits(BLOCK_WORDS));
-            data.ch_al1_ctrl().write(|w| {
-                w.bits(ctrl(|c| {
-                    c.incr_write = true;
-                    c.ring_size_write = bytes.trailing_zeros();
-                    c.treq = TREQ_PIO0_RX0;
-                    c.chain_to = CONTROL as u32;
-                    c.high_priority = true;
-                }))
-            });
-            let control = dma.ch(CONTROL);
-            control
-                .ch_read_addr()
-                .write(|w| w.bits(BLOCK_RELOAD.as_ptr() as u32));
-            control
-                .ch_write_addr()
-                .write(|w| w.bits(data.ch_al1_trans_count_trig().as_ptr() as u32));
-            control.ch_trans_count().write(|w| w.bits(1));
-            control.ch_al1_ctrl().write(|w| {
-                w.bits(ctrl(|c| {
-                    c.treq = TREQ_PERMANENT;
-                    c.chain_to = CONTROL as u32;
-                    c.high_priority = true;
-                    c.irq_quiet = true;
-                }))
-            });
-            dma.inte1().write(|w| w.bits(1 << DATA));
-            dma.multi_chan_trigger().write(|w| w.bits(1 << DATA));
+        // SAFETY: the registers' addresses alone are taken.
+        let [rx0, rx1, adc] = unsafe {
+            let (pio, adc) = (&*pac::PIO0::ptr(), &*pac::ADC::ptr());
+            [
+                pio.rxf(0).as_ptr(),
+                pio.rxf(1).as_ptr(),
+                adc.fifo().as_ptr(),
+            ]
         }
-        Ok(Self { dma, base })
+        .map(|register| register as u32);
+        let stream = |data, treq, source| Stream { data, treq, source };
+        arm(&dma, stream(DATA, TREQ_PIO0_RX0, rx0), samples)?;
+        arm(&dma, stream(2, TREQ_PIO0_RX1, rx1), arrival)?;
+        arm(&dma, stream(4, TREQ_ADC, adc), level)?;
+        // SAFETY: every set of channels is valid for both.
+        unsafe {
+            dma.inte1().write(|w| w.bits(1 << DATA));
+            dma.multi_chan_trigger().write(|w| w.bits(0b01_0101));
+        }
+        Ok(Self {
+            dma,
+            base: samples.as_ptr() as u32,
+        })
     }
 
     /// Index of the word that will be written next. The address moves when a transfer is issued: the newest word may land a few
@@ -121,6 +122,54 @@ impl<const N: usize> DmaRing<N> {
         self.dma.ints1().write(|w| unsafe { w.bits(1 << DATA) });
         pac::NVIC::unpend(pac::Interrupt::DMA_IRQ_1);
     }
+}
+
+/// Sets up one ring's two channels, not yet triggered.
+fn arm<const N: usize>(
+    dma: &pac::DMA,
+    stream: Stream,
+    words: &'static [AtomicU32; N],
+) -> Result<(), Misplaced> {
+    let base = words.as_ptr() as u32;
+    let bytes = (N * 4) as u32;
+    if !N.is_power_of_two() || !(8..=1 << 15).contains(&bytes) || base & (bytes - 1) != 0 {
+        return Err(Misplaced);
+    }
+    let control_number = stream.data + 1;
+    // SAFETY: the source is a FIFO register, the target a static ring whose address bits above its size never change
+    // (RING_SIZE, alignment checked above); the words are atomics, so the hardware's writes are no data race.
+    unsafe {
+        let data = dma.ch(stream.data);
+        data.ch_read_addr().write(|w| w.bits(stream.source));
+        data.ch_write_addr().write(|w| w.bits(base));
+        data.ch_trans_count().write(|w| w.bits(BLOCK_WORDS));
+        data.ch_al1_ctrl().write(|w| {
+            w.bits(ctrl(|c| {
+                c.incr_write = true;
+                c.ring_size_write = bytes.trailing_zeros();
+                c.treq = stream.treq;
+                c.chain_to = control_number as u32;
+                c.high_priority = true;
+            }))
+        });
+        let control = dma.ch(control_number);
+        control
+            .ch_read_addr()
+            .write(|w| w.bits(BLOCK_RELOAD.as_ptr() as u32));
+        control
+            .ch_write_addr()
+            .write(|w| w.bits(data.ch_al1_trans_count_trig().as_ptr() as u32));
+        control.ch_trans_count().write(|w| w.bits(1));
+        control.ch_al1_ctrl().write(|w| {
+            w.bits(ctrl(|c| {
+                c.treq = TREQ_PERMANENT;
+                c.chain_to = control_number as u32;
+                c.high_priority = true;
+                c.irq_quiet = true;
+            }))
+        });
+    }
+    Ok(())
 }
 
 /// Fields of a channel's CTRL register (RP2040 datasheet, 2.5.7: CH0_CTRL_TRIG).

@@ -6,9 +6,10 @@
 //! |---|---|---|
 //! | [`parts`] | everything, brought up once, in order | RESETS, XOSC, PLL_SYS, PLL_USB, CLOCKS, WATCHDOG.TICK |
 //! | [`board`] | pins by net name | IO_BANK0, PADS_BANK0 |
-//! | [`pio_sampler`] | PULSES at 8 Msps, 32 samples a word | PIO0 SM0 |
+//! | [`pio_sampler`] | PULSES at 8 Msps and at 120/7 Msps, 32 samples a word | PIO0 SM0, SM1 |
 //! | [`pps_counter`] | GNSS_PPS in system cycles since the first sample | PIO0 SM2, SM3 |
-//! | [`dma_ring`] | a ring that DMA fills for ever | DMA channels 0 and 1, INTS1 |
+//! | [`level_converter`] | RSSI and trigger levels | ADC |
+//! | [`dma_ring`] | rings that DMA fills for ever | DMA channels 0 to 5, INTS1 |
 //! | [`i2c`] | EEPROM's bus, every wait with an end | I2C1, IO_BANK0 and SIO of its pins |
 //! | [`timer`] | microseconds, one alarm | TIMER |
 //! | [`uart`] | COMMS_UART, both ways by DMA | UART1, DMA channels 9 to 11, INTS0 |
@@ -37,6 +38,7 @@ pub mod flash;
 mod hard_fault;
 pub mod i2c;
 pub mod kept;
+pub mod level_converter;
 pub mod parts;
 pub mod pio_sampler;
 pub mod pps_counter;

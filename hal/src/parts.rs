@@ -10,6 +10,7 @@ use crate::core1::Core1;
 use crate::dma_ring::DmaChannels;
 use crate::flash::{self, Flash, UNIQUE_ID};
 use crate::i2c::I2c1;
+use crate::level_converter::LevelConverter;
 use crate::pio_sampler::PioSampler;
 use crate::pps_counter::PpsCounter;
 use crate::uart::{CommsUart, GnssUart};
@@ -86,7 +87,9 @@ pub struct Parts {
     pub i2c: Option<I2c1>,
     /// PULSES sampler, stopped.
     pub sampler: PioSampler,
-    /// Two DMA channels for its ring.
+    /// The converter, stopped.
+    pub converter: LevelConverter,
+    /// DMA channels for the rings.
     pub dma: DmaChannels,
     /// The GNSS receiver's UART and pulse, not started, on boards that have a connector for one.
     pub gnss: Option<GnssParts>,
@@ -144,6 +147,8 @@ impl Parts {
                 .clear_bit()
                 .uart0()
                 .clear_bit()
+                .adc()
+                .clear_bit()
                 .uart1()
                 .clear_bit()
         });
@@ -153,6 +158,7 @@ impl Parts {
                 || done.dma().bit_is_clear()
                 || done.pio0().bit_is_clear()
                 || done.uart0().bit_is_clear()
+                || done.adc().bit_is_clear()
                 || done.uart1().bit_is_clear()
         } {}
 
@@ -185,6 +191,7 @@ impl Parts {
             esp32_enable: pins.esp32_enable,
             i2c: pins.i2c.map(|_| I2c1::new(p.I2C1)),
             sampler: PioSampler::new(p.PIO0, PULSES_GPIO),
+            converter: LevelConverter::new(p.ADC),
             dma: DmaChannels { dma: p.DMA },
             gnss: GNSS_PPS_GPIO.map(|pps_gpio| GnssParts {
                 uart: p.UART0,

@@ -4,14 +4,18 @@
 //! from pulse to pulse. Arrivals fall anywhere between two samples. A constant delay is calibration: the mean error at 30 dB is taken off, once, for each
 //! slicer. What is left at another level is the bias there. The mix has levels over 40 dB.
 //!
-//! `--frames N`; `--nominal`: transmitters without tolerances.
+//! The error counts from the data block, of which every receiver hears the same; *first pulse* counts from the preamble's first one, from which a transponder may send
+//! its data block up to 50 ns early or late. *Within* is the share of errors within twice the uncertainty that the receiver states.
+//!
+//! `--frames N`; `--nominal`: transmitters without tolerances; `--delays`: what belongs into the board's `Calibration`.
 
 use tests::Bench;
-use tests::reception::arrival::{air, errors_ns, mean, quantile, rms};
+use tests::reception::arrival::{Error, NS_A_PART, air, errors, mean, quantile, rms};
 use tests::reception::native::SLICERS;
 use twin::front_end::Slicer;
-use twin::source::scene::Tolerances;
+use twin::front_end::parameters::NOISE_DBM;
 use twin::source::scene::traffic::Range;
+use twin::source::scene::{Tolerances, dbm_at_snr};
 
 /// Frames a level.
 const FRAMES: usize = 300;
@@ -24,6 +28,10 @@ const LEVELS: [(&str, Range); 6] = [
     ("50 dB", Range::at(50.0)),
     ("mix 12-52 dB", Range::new(12.0, 52.0)),
 ];
+/// Points of the board's calibration, dB over the noise in the whole path between two of them, and the least ratio at which enough frames are heard.
+const POINTS: u64 = 7;
+const POINT_DB: f32 = 10.24;
+const LEAST_SNR_DB: f32 = 13.0;
 /// The level whose mean is the delay.
 const CALIBRATED_AT: usize = 2;
 
@@ -32,6 +40,10 @@ fn main() -> std::io::Result<()> {
         return Ok(());
     }
     let frames = tests::number_option("--frames", FRAMES);
+    if tests::flag("--delays") {
+        delays(frames);
+        return Ok(());
+    }
     let tolerances = if tests::flag("--nominal") {
         Tolerances::NOMINAL
     } else {
@@ -42,35 +54,67 @@ fn main() -> std::io::Result<()> {
         .zip(1..)
         .map(|((_, snr_db), number)| air(number, frames, *snr_db, tolerances))
         .collect();
-    let mut bench = Bench::new("arrival", "slicer,level,frames,bias_ns,rms_ns,p999_ns");
+    let mut bench = Bench::new(
+        "arrival",
+        "slicer,level,frames,bias_ns,rms_ns,p999_ns,within,first_pulse_rms_ns",
+    );
     bench.line(&format!("error of the time of arrival, ns, of {frames} frames a level; the mean at 30 dB is taken off"));
     bench.line(&format!(
-        "{:<8}{:<14}{:>8}{:>10}{:>10}{:>10}",
-        "slicer", "level", "frames", "bias", "rms", "99.9 %"
+        "{:<8}{:<14}{:>8}{:>10}{:>10}{:>10}{:>10}{:>18}",
+        "slicer", "level", "frames", "bias", "rms", "99.9 %", "within", "first pulse rms"
     ));
     let mut result = Vec::new();
     for (name, slicer) in SLICERS {
-        let errors: Vec<Vec<f64>> = air
+        let errors: Vec<Vec<Error>> = air
             .iter()
-            .map(|(scene, level)| errors_ns(scene, level, slicer))
+            .map(|(scene, level)| errors(scene, level, slicer))
             .collect();
-        let delay = mean(&errors[CALIBRATED_AT]);
+        let delay = mean(&ns(&errors[CALIBRATED_AT], 0.0, |e| e.data_block_ns));
         for ((level, _), errors) in LEVELS.iter().zip(&errors) {
-            let errors: Vec<f64> = errors.iter().map(|error| error - delay).collect();
-            let (bias, rms, worst) = (mean(&errors), rms(&errors), quantile(&errors, 0.999));
+            let block = ns(errors, delay, |error| error.data_block_ns);
+            let (bias, rms_ns, worst) = (mean(&block), rms(&block), quantile(&block, 0.999));
+            let first = rms(&ns(errors, delay, |error| error.first_pulse_ns));
+            let stated = errors.iter().zip(&block);
+            let within = stated.filter(|(error, ns)| ns.abs() <= 2.0 * error.stated_ns);
+            let within = 100.0 * within.count() as f64 / errors.len() as f64;
             bench.line(&format!(
-                "{name:<8}{level:<14}{:>8}{bias:>10.1}{rms:>10.1}{worst:>10.1}",
+                "{name:<8}{level:<14}{:>8}{bias:>10.1}{rms_ns:>10.1}{worst:>10.1}{within:>8.1} %{first:>18.1}",
                 errors.len()
             ));
             bench.row(format!(
-                "{name},{level},{},{bias:.2},{rms:.2},{worst:.2}",
+                "{name},{level},{},{bias:.2},{rms_ns:.2},{worst:.2},{within:.1},{first:.2}",
                 errors.len()
             ));
             if slicer == Slicer::RcFollowing {
                 let key = level.replace(" dB", "").replace([' ', '-'], "_");
-                result.push(format!("rc_rms_{key}={rms:.1}"));
+                result.push(format!("rc_rms_{key}={rms_ns:.1}"));
             }
         }
     }
     bench.finish(&result.join(" "))
+}
+
+/// One error of all frames, less a delay.
+fn ns(errors: &[Error], delay: f64, which: impl Fn(&Error) -> f64) -> Vec<f64> {
+    errors.iter().map(|error| which(error) - delay).collect()
+}
+
+/// The mean delay at the points of the board's calibration, behind the one it has: in 1/256 of a tick.
+fn delays(frames: usize) {
+    for point in 0..POINTS {
+        let snr_db = (POINT_DB * point as f32 - path_db()).max(LEAST_SNR_DB);
+        let (scene, level) = air(100 + point, frames, Range::at(snr_db), Tolerances::ANNEX_10);
+        let errors = errors(&scene, &level, Slicer::RcFollowing);
+        let late = mean(&ns(&errors, 0.0, |error| error.data_block_ns));
+        let count = errors.len();
+        println!(
+            "{snr_db:5.1} dB: {count} frames {late:6.1} ns {:6.0}",
+            late / NS_A_PART
+        );
+    }
+}
+
+/// From the ratio in 2 MHz to the one in the whole path, dB (negative).
+fn path_db() -> f32 {
+    dbm_at_snr(0.0) - NOISE_DBM
 }

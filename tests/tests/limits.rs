@@ -1,6 +1,6 @@
 //! Short forms of the long measurements: the channel at its limit, frames out of nothing, the time of arrival.
 
-use tests::reception::arrival::{air, errors_ns, mean, quantile, rms};
+use tests::reception::arrival::{air, errors, mean, quantile, rms};
 use tests::reception::limit::{self, Reports};
 use tests::reception::nothing::{KNOWN, Run};
 use twin::front_end::Slicer;
@@ -26,8 +26,8 @@ fn frames_back_to_back_are_all_decoded_and_reported() {
         outcome.port_dropped,
     );
     assert_eq!(lost, (0, 0, 0), "{outcome:?}");
-    // Core 1 has room for noise and replies beside.
-    assert!(outcome.load[1] < 0.85, "{outcome:?}");
+    // Core 1 has room; what it would give up first is the arrival.
+    assert!(outcome.load[1] < 0.93, "{outcome:?}");
 }
 
 #[test]
@@ -48,17 +48,18 @@ fn noise_and_replies_alone_give_no_frame_with_400_known_addresses() {
     }
 }
 
-/// Today's stamp is the 8 MHz sample in which the preamble starts: 36 ns rms by itself. The bounds fall with the second sampler.
+/// From the data block, level and all; the least is the rise times that Annex 10 allows.
 #[test]
-fn arrivals_are_within_a_sample_of_the_truth() {
+fn arrivals_are_within_nanoseconds_of_the_truth() {
     let (scene, level) = air(3, ARRIVALS, Range::at(30.0), Tolerances::ANNEX_10);
-    let errors = errors_ns(&scene, &level, Slicer::RcFollowing);
+    let errors = errors(&scene, &level, Slicer::RcFollowing);
     assert!(errors.len() >= ARRIVALS * 98 / 100, "{}", errors.len());
+    let errors: Vec<f64> = errors.iter().map(|e| e.data_block_ns).collect();
     let delay = mean(&errors);
     let errors: Vec<f64> = errors.iter().map(|error| error - delay).collect();
-    assert!(rms(&errors) < 60.0, "{}", rms(&errors));
+    assert!(rms(&errors) < 6.0, "{}", rms(&errors));
     assert!(
-        quantile(&errors, 0.999) < 250.0,
+        quantile(&errors, 0.999) < 25.0,
         "{}",
         quantile(&errors, 0.999)
     );

@@ -1,21 +1,24 @@
-//! The native engine: the demodulator of core 1 on the host, fed with the bits the PIO would sample.
+//! The native engine: the demodulator of core 1 on the host, fed with what samplers and converter would see.
 //!
-//! Sample `k` is the pin's level at tick `15 k + phase`; an edge is seen from the tick [`edge_tick`] gives it. What is left out is everything
-//! else of the chip: no lost time, so no overruns.
+//! Sample `k` of the first sampler is the pin's level at tick `15 k + phase`, of the second at tick `7 k + phase`; an edge is seen from the tick [`edge_tick`] gives it. Conversion `k`
+//! holds the detector's voltage at half tick `545 k` behind the start. What is left out is everything else of the chip: no lost time, so no overruns.
 
-use crate::front_end::{PulseSource, edge_tick};
+use crate::front_end::{PulseSource, edge_tick, rssi_mv};
 use demod::{
-    Counters, CountersSnapshot, Demodulator, LOOKAHEAD_WORDS, RawFrame, SampleRing,
-    TICKS_PER_SAMPLE,
+    ARRIVAL_TICKS_PER_SAMPLE, ArrivalRing, Calibration, Counters, CountersSnapshot, Demodulator,
+    LEVEL_HALF_TICKS, LEVEL_START_HALF_TICKS, LOOKAHEAD_WORDS, LevelRing, RawFrame, Rings,
+    SampleRing, TICKS_PER_SAMPLE,
 };
 
 /// Words between two runs of the demodulator: the DMA's block.
 const BLOCK_WORDS: u64 = 32;
+/// Ticks between a pin and the sampler that reads it.
+const SYNC_TICKS: u64 = 2;
 /// Picoseconds a block: 32 words of 32 samples of 125 ns.
 const BLOCK_PS: u64 = BLOCK_WORDS * 32 * 125_000;
 
 /// How the native engine runs.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Tick of the first sample, 0-14.
     pub sample_phase: u64,
@@ -23,6 +26,19 @@ pub struct Options {
     pub trigger_level_mv: Option<f64>,
     /// Ends after this playback time, ps, even if the source goes on.
     pub until_ps: Option<u64>,
+    /// The receiver's constants.
+    pub calibration: Calibration,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            sample_phase: 0,
+            trigger_level_mv: None,
+            until_ps: None,
+            calibration: Calibration::ADSBEE_1090,
+        }
+    }
 }
 
 /// Plays `source` to its end and hands each frame over.
@@ -31,10 +47,21 @@ pub fn run(
     options: Options,
     sink: &mut dyn FnMut(RawFrame),
 ) -> CountersSnapshot {
-    let ring = Box::new(SampleRing::new());
+    let (ring, arrival_ring) = (Box::new(SampleRing::new()), Box::new(ArrivalRing::new()));
+    let level_ring = Box::new(LevelRing::new());
+    let rings = Rings {
+        samples: &ring,
+        arrival: &arrival_ring,
+        level: &level_ring,
+    };
     let counters = Counters::new();
-    let mut demodulator = Box::new(Demodulator::new());
-    let mut sampler = Sampler::new(&ring, options.sample_phase);
+    let mut demodulator = Box::new(Demodulator::new(options.calibration));
+    let phase = options.sample_phase % TICKS_PER_SAMPLE;
+    let store = |index, word| ring.store(index, word);
+    let mut sampler = Sampler::new(&store, TICKS_PER_SAMPLE, phase);
+    let store = |index, word| arrival_ring.store(index, word);
+    let mut second = Sampler::new(&store, u64::from(ARRIVAL_TICKS_PER_SAMPLE), phase);
+    let mut converter = Converter::default();
     let mut edges = Vec::new();
     let mut until_ps = 0;
     if let Some(mv) = options.trigger_level_mv {
@@ -54,16 +81,49 @@ pub fn run(
         }
         for edge in &edges {
             sampler.edge(edge_tick(edge.at_ps), edge.level);
+            second.edge(edge_tick(edge.at_ps), edge.level);
         }
         sampler.sample_before(edge_tick(until_ps));
-        demodulator.run(&ring, sampler.words(), &counters, &mut |frame| sink(frame));
+        second.sample_before(edge_tick(until_ps));
+        converter.convert_before(2 * edge_tick(until_ps), source, &level_ring);
+        let words = sampler.words();
+        demodulator.run(rings, words, &counters, &mut || words, &mut |frame| {
+            sink(frame)
+        });
     }
     counters.snapshot()
 }
 
+/// The converter beside the samplers.
+#[derive(Default)]
+struct Converter {
+    conversions: u64,
+}
+
+impl Converter {
+    /// Makes every conversion that begins before this half tick.
+    fn convert_before(&mut self, half_tick: u64, source: &dyn PulseSource, ring: &LevelRing) {
+        loop {
+            let at = LEVEL_START_HALF_TICKS + self.conversions * u64::from(LEVEL_HALF_TICKS);
+            if at >= half_tick {
+                break;
+            }
+            // At the first whole tick; the pin is sampled so many ticks behind what reaches it, the converter is not.
+            let tick = at.div_ceil(2) + SYNC_TICKS;
+            let mv = rssi_mv(source.detector_mv(tick * 25_000 / 3), tick);
+            ring.store(
+                self.conversions,
+                (mv / 3300.0 * 4096.0).clamp(0.0, 4095.0) as u32,
+            );
+            self.conversions += 1;
+        }
+    }
+}
+
 /// Turns edges into sample words.
 struct Sampler<'a> {
-    ring: &'a SampleRing,
+    store: &'a dyn Fn(u64, u32),
+    ticks_per_sample: u64,
     phase: u64,
     level: bool,
     samples: u64,
@@ -71,10 +131,11 @@ struct Sampler<'a> {
 }
 
 impl<'a> Sampler<'a> {
-    fn new(ring: &'a SampleRing, phase: u64) -> Self {
+    fn new(store: &'a dyn Fn(u64, u32), ticks_per_sample: u64, phase: u64) -> Self {
         Self {
-            ring,
-            phase: phase % TICKS_PER_SAMPLE,
+            store,
+            ticks_per_sample,
+            phase,
             level: false,
             samples: 0,
             word: 0,
@@ -94,7 +155,9 @@ impl<'a> Sampler<'a> {
 
     /// Takes every sample before this tick.
     fn sample_before(&mut self, tick: u64) {
-        let end = tick.saturating_sub(self.phase).div_ceil(TICKS_PER_SAMPLE);
+        let end = tick
+            .saturating_sub(self.phase)
+            .div_ceil(self.ticks_per_sample);
         while self.samples < end {
             let free = 32 - self.samples % 32;
             let count = free.min(end - self.samples);
@@ -104,7 +167,7 @@ impl<'a> Sampler<'a> {
             }
             self.samples += count;
             if count == free {
-                self.ring.store(self.words() - 1, self.word);
+                (self.store)(self.words() - 1, self.word);
                 self.word = 0;
             }
         }
@@ -118,7 +181,8 @@ mod tests {
     #[test]
     fn a_sample_is_the_level_at_its_tick() {
         let ring = SampleRing::new();
-        let mut sampler = Sampler::new(&ring, 7);
+        let store = |index, word| ring.store(index, word);
+        let mut sampler = Sampler::new(&store, 15, 7);
         // Samples stand at ticks 7, 22, 37, 52, ...
         sampler.edge(22, true);
         sampler.edge(38, false);

@@ -40,9 +40,8 @@ fn crate_of(symbol: &str) -> Option<&str> {
 
 fn layer_of(name: &str) -> &'static str {
     match name {
-        "mode_s" | "demod" | "tracker" | "report" | "reporter" | "settings" | "shell" | "store" => {
-            "services"
-        }
+        "mode_s" | "demod" | "tracker" | "trigger" | "report" | "reporter" | "settings"
+        | "shell" | "store" => "services",
         "nmea_0183" | "timebase" => "services",
         "drivers" => "drivers",
         "hal" => "hal",

@@ -18,7 +18,7 @@
 //! | 21-24 | free | nobody | – |
 //! | 25 | TRIGGER_LEVEL, PWM through an RC | `drivers::trigger_level` | PWM4 B |
 //! | 26 | GNSS_PPS | `pps_counter` | PIO0 in |
-//! | 27, 28 | TRIGGER_LEVEL_ADC (ADC1), RSSI_ADC (ADC2) | nobody yet | – |
+//! | 27, 28 | TRIGGER_LEVEL_ADC (ADC1), RSSI_ADC (ADC2) | `level_converter` | analog, nothing digital |
 //!
 //! Source: the hardware facts in the project's ADSBee reference notes. Pins that nobody uses stay as reset leaves them.
 
@@ -76,6 +76,7 @@ pub(crate) fn pins(pins: gpio::Pins) -> Pins {
         ),
         i2c: Some((pins.gpio2.reconfigure(), pins.gpio3.reconfigure())),
         pulses: pins.gpio19.reconfigure(),
+        _analog: (pins.gpio27.reconfigure(), pins.gpio28.reconfigure()),
         boot_config: pins.gpio20.reconfigure(),
         trigger_level: pins.gpio25.reconfigure(),
         trigger_level_low: None,

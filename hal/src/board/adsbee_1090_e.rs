@@ -12,7 +12,8 @@
 //! | 22 | free | nobody | – |
 //! | 24 | TRIGGER_LEVEL_HIGH, PWM through an RC | `drivers::trigger_level` | PWM4 A |
 //! | 25 | TRIGGER_LEVEL_LOW, PWM through an RC | `drivers::trigger_level` | PWM4 B |
-//! | 26, 27, 28 | levels' read-back HIGH (ADC0), LOW (ADC1), RSSI_ADC (ADC2) | nobody yet | – |
+//! | 26 | read-back of the high level (ADC0) | nobody yet | – |
+//! | 27, 28 | read-back of the low level (ADC1), RSSI_ADC (ADC2) | `level_converter` | analog, nothing digital |
 //!
 //! The comparator takes the high level (`TL_SET` sets the threshold from `hi`: a ruling).
 //!
@@ -59,6 +60,7 @@ pub(crate) fn pins(pins: gpio::Pins) -> Pins {
         esp32_enable: None,
         i2c: Some((pins.gpio2.reconfigure(), pins.gpio3.reconfigure())),
         pulses: pins.gpio19.reconfigure(),
+        _analog: (pins.gpio27.reconfigure(), pins.gpio28.reconfigure()),
         boot_config: pins.gpio20.reconfigure(),
         trigger_level: pins.gpio24.reconfigure(),
         trigger_level_low: Some(pins.gpio25.reconfigure()),

@@ -81,6 +81,7 @@ pub(crate) fn pins(pins: gpio::Pins) -> Pins {
         ),
         i2c: None,
         pulses: pins.gpio19.reconfigure(),
+        _analog: (pins.gpio27.reconfigure(), pins.gpio28.reconfigure()),
         boot_config: pins.gpio20.reconfigure(),
         trigger_level: pins.gpio26.reconfigure(),
         trigger_level_low: None,

@@ -30,11 +30,12 @@ mod adsbee_1090_e;
 pub use adsbee_1090_e::*;
 
 use rp2040_hal::gpio::bank0::{
-    Gpio0, Gpio1, Gpio2, Gpio3, Gpio4, Gpio5, Gpio14, Gpio15, Gpio18, Gpio19, Gpio20,
+    Gpio0, Gpio1, Gpio2, Gpio3, Gpio4, Gpio5, Gpio14, Gpio15, Gpio18, Gpio19, Gpio20, Gpio27,
+    Gpio28,
 };
 use rp2040_hal::gpio::{
-    FunctionI2C, FunctionPio0, FunctionSioInput, FunctionSioOutput, FunctionUart, Pin, PullDown,
-    PullNone, PullUp,
+    FunctionI2C, FunctionNull, FunctionPio0, FunctionSioInput, FunctionSioOutput, FunctionUart,
+    Pin, PullDown, PullNone, PullUp,
 };
 
 /// GPIO of PULSES: the PIO program's input base.
@@ -92,6 +93,11 @@ pub struct Pins {
     pub i2c: Option<I2cPins>,
     /// Comparator output. Pulled down: without a comparator the line is quiet.
     pub pulses: Pin<Gpio19, FunctionPio0, PullDown>,
+    /// TRIGGER_LEVEL_ADC and RSSI_ADC.
+    _analog: (
+        Pin<Gpio27, FunctionNull, PullNone>,
+        Pin<Gpio28, FunctionNull, PullNone>,
+    ),
     /// BOOT/CONFIG.
     pub boot_config: BootConfig,
     /// Trigger level PWM.

@@ -54,6 +54,18 @@ pub(crate) fn byte_and_certainty(samples: &mut Aligned) -> (u8, u32) {
     ((high << 4 | low) as u8, sure)
 }
 
+/// How sure the bits of so many bytes are together.
+#[inline(never)]
+pub(crate) fn certainty(from: Aligned, bytes: usize) -> u32 {
+    let mut samples = from;
+    let mut certainty = 0;
+    for _ in 0..bytes {
+        let (first, second) = (samples.take(), samples.take());
+        certainty += (differences(first) + differences(second)).wrapping_mul(0x0101_0101) >> 24;
+    }
+    certainty
+}
+
 /// How sure each of the four bits of a word is: the absolute difference of its halves' ones, 0 to 4, one a byte.
 #[inline(always)]
 fn differences(samples: u32) -> u32 {

@@ -105,6 +105,8 @@ stages: {
     accepted_address_repaired,
     /// Of `accepted_exact` and `accepted_interrogator`: found without a preamble.
     headless,
+    /// Of the accepted: level unknown and arrival by the first sampler alone, because the demodulator was late.
+    unmeasured,
 }
 trials: {
     /// Parities of DF11, 17, 18 and 19 checked as received.

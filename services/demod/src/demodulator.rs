@@ -12,14 +12,17 @@
 //!
 //! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 160 µs.
 
+use crate::arrival::{self, Arrival, COARSE_SIGMA, Samples};
+use crate::calibration::Calibration;
 use crate::counters::{Counters, add};
 use crate::gate::{Gate, Pairs, REACH, STEER_WORDS, STEP_WORDS};
 use crate::headless::{self, STRONG, WAIT_WORDS};
 use crate::heard::Heard;
-use crate::preamble::{self, mismatches, ones};
+use crate::level::{self, Conversions, LEVEL_START_HALF_TICKS};
+use crate::preamble::{self, ones};
 use crate::repair::Flips;
-use crate::ring::{RING_WORDS, SampleRing};
-use crate::trial::{Outcome, Tried, from_sample, received, try_phases};
+use crate::ring::{RING_WORDS, Rings, SampleRing};
+use crate::trial::{Outcome, Tried, received, try_phases};
 use crate::{SAMPLES_PER_WORD, TICKS_PER_SAMPLE};
 use mode_s::Frame;
 use mode_s::frame::LONG_BYTES;
@@ -38,6 +41,9 @@ const PREAMBLE_SAMPLES: u32 = 64;
 const BIT_SAMPLES: u32 = 8;
 /// Samples before an accepted frame's end at which another may start: 12 µs, a preamble and four bits.
 const TAIL_SAMPLES: u64 = 96;
+/// Words behind which a frame is no longer measured, 2 ms: a core that is so late has no time for it, and the rings of second sampler and converter, of 955 and 1163
+/// words, are far from their end.
+const MOST_MEASURED_AGE: u64 = 500;
 /// Words before strong bits began in which their preamble may stand, tried.
 const TRIED_WITHIN: u32 = 8;
 
@@ -48,9 +54,13 @@ pub struct RawFrame {
     pub frame: Frame,
     /// Which bits were repaired: [`RawFrame::received`] takes them back.
     pub flips: Flips,
-    /// Tick (120 MHz) of the leading edge of the preamble's first pulse, from the first capture sample.
+    /// Tick (120 MHz) of the leading edge of the preamble's first pulse, from the first capture sample, rounded down.
     pub arrival: u64,
-    /// Signal level in a hundredth of a dBm; not measured so far.
+    /// The rest of the arrival, in 1/256 of a tick.
+    pub arrival_parts: u8,
+    /// The arrival's standard uncertainty, in 1/256 of a tick.
+    pub arrival_sigma: u16,
+    /// Signal level at the antenna in a hundredth of a dBm.
     pub level: Option<i16>,
 }
 
@@ -79,43 +89,69 @@ pub struct Demodulator {
     next: u64,
     /// First sample (from the start of capture) that is not behind an accepted frame or a tried candidate.
     free_from: u64,
+    /// First sample of the frame accepted last.
+    accepted_at: u64,
     heard: Heard,
     gate: Gate,
     /// Where strong bits began, the last word that had them, and the last word at which a preamble was tried.
     strong_since: u32,
     strong_last: u32,
     tried_last: u32,
+    second_samples: Samples,
+    conversions: Conversions,
+    calibration: Calibration,
+    /// The noise at the antenna, 1/100 dBm.
+    floor_cdbm: i16,
 }
 
 impl Demodulator {
-    /// Nothing heard, at the start of capture.
-    pub const fn new() -> Self {
+    /// Nothing heard, at the start of capture, on this board.
+    pub const fn new(calibration: Calibration) -> Self {
         Self {
             next: 0,
             free_from: 0,
+            accepted_at: 0,
             heard: Heard::new(),
             gate: Gate::new(),
             strong_since: 0,
             strong_last: u32::MAX,
             tried_last: u32::MAX,
+            second_samples: Samples::new(0),
+            conversions: Conversions::new(LEVEL_START_HALF_TICKS),
+            calibration,
+            floor_cdbm: calibration.floor_cdbm,
         }
     }
 
-    /// Works off the ring up to `written` words since the start of capture, and gives each accepted frame to `sink`.
+    /// The noise at the antenna as it was measured, 1/100 dBm: what an arrival's delay is reckoned from.
+    pub fn set_floor(&mut self, floor_cdbm: i16) {
+        self.floor_cdbm = floor_cdbm;
+    }
+
+    /// Works off the rings up to `written` words since the start of capture, and gives each accepted frame to `sink`. `newest` tells how many words there are by
+    /// then: a long backlog takes its time, in which the smaller rings go on.
     #[inline]
     pub fn run(
         &mut self,
-        ring: &SampleRing,
+        rings: Rings,
         written: u64,
         counters: &Counters,
+        newest: &mut impl FnMut() -> u64,
         sink: &mut impl FnMut(RawFrame),
     ) {
         if written.saturating_sub(self.next) > MOST_BEHIND {
             self.skip(written, counters);
         }
         self.heard.at_word(self.next);
+        // A frame without preamble begins before the word that shows it.
+        let from = self.next.saturating_sub(u64::from(STEER_WORDS));
+        let now = ticks(from * u64::from(SAMPLES_PER_WORD));
+        self.second_samples.follow(now);
+        self.conversions.follow(2 * now);
+        let ring = rings.samples;
         while let Some(pairs) = self.find(ring, written, counters) {
-            if let Some(frame) = self.examine(ring, pairs, counters) {
+            if let Some(mut frame) = self.examine(ring, pairs, counters) {
+                self.measure(rings, newest(), &mut frame, counters);
                 sink(frame);
             }
         }
@@ -223,9 +259,8 @@ impl Demodulator {
             add(&counters.superseded, u32::from(others != rest));
             count(tried.outcome, counters);
             if tried.outcome.is_accepted() {
-                let phase = tried.phase
-                    + leading_phase(ring, word, sample.wrapping_add_signed(tried.phase));
-                let first = (start + u64::from(sample)).saturating_add_signed(i64::from(phase));
+                let first =
+                    (start + u64::from(sample)).saturating_add_signed(i64::from(tried.phase));
                 add(&counters.superseded, ones(rest));
                 return self.accept(first, &tried);
             }
@@ -288,26 +323,59 @@ impl Demodulator {
     /// A frame whose preamble's first sample is `first`.
     fn accept(&mut self, first: u64, tried: &Tried) -> Option<RawFrame> {
         let frame = Frame::from_bytes(received(&tried.bytes)).ok()?;
-        if let (Outcome::Exact, Some(mode_s::Address::Icao(icao))) =
-            (tried.outcome, mode_s::Parity::of(&frame).address())
+        // Its parity is known to fit. The layout of a DF19 with another AF is the military's own.
+        let names_address = tried.bytes[0] >> 3 != 19 || tried.bytes[0] & 7 == 0;
+        if tried.outcome == Outcome::Exact
+            && names_address
+            && let mode_s::Address::Icao(icao) = mode_s::Address::of_aa(&frame)
         {
             self.heard.note(icao.0);
         }
         let bits = received(&tried.bytes).len() as u32 * 8;
         let samples = u64::from(PREAMBLE_SAMPLES + BIT_SAMPLES * bits);
         self.free_from = first + samples - TAIL_SAMPLES;
+        self.accepted_at = first;
         Some(RawFrame {
             frame,
             flips: tried.flips,
             arrival: ticks(first),
+            arrival_parts: 0,
+            arrival_sigma: COARSE_SIGMA,
             level: None,
         })
+    }
+
+    /// Adds what the other two rings know of the frame just accepted, unless that is too long ago.
+    #[inline(never)]
+    fn measure(&self, rings: Rings, written: u64, frame: &mut RawFrame, counters: &Counters) {
+        let first_word = self.accepted_at / u64::from(SAMPLES_PER_WORD);
+        if written.saturating_sub(first_word) > MOST_MEASURED_AGE {
+            add(&counters.unmeasured, 1);
+            return;
+        }
+        let bytes = frame.frame.bytes();
+        let arrival = arrival::measure(rings.arrival, &self.second_samples, frame.arrival, bytes);
+        let level = level::measure(
+            rings.level,
+            &self.conversions,
+            &self.calibration,
+            arrival.ticks,
+            bytes,
+        );
+        let over_floor = level.map(|level| i32::from(level) - i32::from(self.floor_cdbm));
+        let Arrival {
+            ticks,
+            parts,
+            sigma,
+        } = arrival.corrected(&self.calibration, over_floor);
+        frame.level = level;
+        (frame.arrival, frame.arrival_parts, frame.arrival_sigma) = (ticks, parts, sigma);
     }
 }
 
 impl Default for Demodulator {
     fn default() -> Self {
-        Self::new()
+        Self::new(Calibration::ADSBEE_1090)
     }
 }
 
@@ -355,18 +423,4 @@ fn first_phase(hits: u32) -> u32 {
         phase += 1;
     }
     phase
-}
-
-/// How many samples from an accepted phase to the one that fits the preamble best, the earliest of equals: a frame also comes out right a
-/// sample or two off.
-fn leading_phase(ring: &SampleRing, word: u32, sample: u32) -> i32 {
-    let mut best = (u32::MAX, 0);
-    for phase in -2..=2 {
-        let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
-        let off = mismatches(&mut samples);
-        if off < best.0 {
-            best = (off, phase);
-        }
-    }
-    best.1
 }

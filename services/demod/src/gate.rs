@@ -38,6 +38,9 @@ const PASSING: u32 = 3;
 /// The threshold's moves a step too many or too few, in 1/256 of a place: up within a millisecond, down in tens of them.
 const UP: u32 = 24;
 const DOWN: u32 = 8;
+/// Steps passing from which on the noise has just come: the threshold jumps by eight places.
+const FLOODED: u32 = 16;
+const JUMP: u32 = 8 << 8;
 /// The threshold's limits, in places of 48, and where it starts.
 const LOWEST: u32 = 22;
 const HIGHEST: u32 = 38;
@@ -154,7 +157,9 @@ impl Gate {
 
     /// Moves the threshold; to be called once every [`STEER_WORDS`] words of the stream.
     pub(crate) fn steer(&mut self) {
-        let moved = if self.passed > PASSING {
+        let moved = if self.passed >= FLOODED {
+            self.threshold + JUMP
+        } else if self.passed > PASSING {
             self.threshold + UP * (self.passed - PASSING)
         } else {
             self.threshold - DOWN * (PASSING - self.passed)

@@ -15,26 +15,35 @@
 //!                                       └ none, but strong bits ─ headless
 //! ```
 //!
-//! Not here: arrival times finer than a sample, signal levels, and what the frame says (`mode-s`).
+//! An accepted frame gets its time of arrival from a second sampler's ring (`arrival`) and its level from the converter's (`level`).
+//!
+//! Not here: what the frame says (`mode-s`).
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod arrival;
 mod bits;
+mod calibration;
 mod counters;
 mod demodulator;
 mod gate;
+mod grid;
 mod headless;
 mod heard;
+mod level;
 mod plausible;
 mod preamble;
 mod repair;
 mod ring;
 mod trial;
 
+pub use arrival::ARRIVAL_TICKS_PER_SAMPLE;
+pub use calibration::Calibration;
 pub use counters::{Counters, CountersSnapshot};
 pub use demodulator::{Demodulator, LOOKAHEAD_WORDS, RawFrame};
+pub use level::{LEVEL_HALF_TICKS, LEVEL_START_HALF_TICKS};
 pub use repair::Flips;
-pub use ring::{RING_WORDS, SampleRing};
+pub use ring::{ARRIVAL_WORDS, ArrivalRing, LEVEL_WORDS, LevelRing, RING_WORDS, Rings, SampleRing};
 
 /// System clock cycles (120 MHz) a sample (8 MHz).
 pub const TICKS_PER_SAMPLE: u64 = 15;

@@ -104,12 +104,57 @@ pub(crate) fn ones(word: u32) -> u32 {
     ((nibbles + (nibbles >> 4)) & 0x0F0F_0F0F).wrapping_mul(0x0101_0101) >> 24
 }
 
-/// Mismatches among the 44 samples asked, from a supposed preamble's start; leaves `samples` at the first bit.
+/// Mismatches among the 44 samples asked of a preamble, if it began a sample before a hit, at it, and one and two behind it.
+#[derive(Clone, Copy)]
+pub(crate) struct Fits([u32; 4]);
+
+/// The first of them.
+const FIRST_FIT: i32 = -1;
+
+impl Fits {
+    /// Around a hit; `samples` stands a sample before it.
+    #[inline(always)]
+    pub(crate) fn of(mut samples: Aligned) -> Self {
+        let (mut a, mut b, mut c) = (samples.take(), samples.take(), samples.take());
+        Self([(); 4].map(|()| {
+            let off = mismatches(a, b);
+            a = a << 1 | b >> 31;
+            b = b << 1 | c >> 31;
+            c <<= 1;
+            off
+        }))
+    }
+
+    /// Mismatches of a phase between the two ends.
+    #[inline(always)]
+    pub(crate) fn at(&self, phase: i32) -> u32 {
+        let index = (phase - FIRST_FIT) as usize;
+        self.0.get(index).copied().unwrap_or(u32::MAX)
+    }
+
+    /// The phase that fits best, up to two samples from this one, the earliest of equals: a frame also comes out right a sample or two off.
+    pub(crate) fn leading(&self, phase: i32) -> i32 {
+        let mut best = (u32::MAX, phase);
+        for near in phase - 2..=phase + 2 {
+            if self.at(near) < best.0 {
+                best = (self.at(near), near);
+            }
+        }
+        best.1
+    }
+}
+
+/// Mismatches of a preamble that begins with these 64 samples.
 #[inline(always)]
-pub(crate) fn mismatches(samples: &mut Aligned) -> u32 {
-    let (first, second) = (samples.take(), samples.take());
-    ones((first ^ PULSES_FIRST) & (PULSES_FIRST | GAPS_FIRST))
-        + ones((second ^ PULSES_SECOND) & (PULSES_SECOND | GAPS_SECOND))
+fn mismatches(first: u32, second: u32) -> u32 {
+    let nibbles = |word: u32| {
+        let pairs = word - ((word >> 1) & 0x5555_5555);
+        (pairs & 0x3333_3333) + ((pairs >> 2) & 0x3333_3333)
+    };
+    let both = nibbles((first ^ PULSES_FIRST) & (PULSES_FIRST | GAPS_FIRST))
+        + nibbles((second ^ PULSES_SECOND) & (PULSES_SECOND | GAPS_SECOND));
+    // Eight a nibble at most, sixteen a byte.
+    ((both & 0x0F0F_0F0F) + (both >> 4 & 0x0F0F_0F0F)).wrapping_mul(0x0101_0101) >> 24
 }
 
 #[cfg(test)]
@@ -188,16 +233,29 @@ mod tests {
 
     #[test]
     fn the_perfect_preamble_has_no_mismatch_and_stuck_levels_have_many() {
-        let fit = |words: [u32; 2]| {
-            let ring = SampleRing::new();
-            (0..).zip(words).for_each(|(n, word)| ring.store(n, word));
-            mismatches(&mut Aligned::new(&ring, 0, 0))
-        };
+        let fit = |[first, second]: [u32; 2]| mismatches(first, second);
         assert_eq!(fit([PULSES_FIRST, PULSES_SECOND]), 0);
         assert_eq!(fit([0; 2]), 16);
         assert_eq!(fit([u32::MAX; 2]), 28);
         // Paired pulses that ran into one.
         assert_eq!(fit([0xFFF0_000F, 0xFF00_0000]), 0);
+    }
+
+    #[test]
+    fn the_best_fit_leads_and_the_earliest_of_equals() {
+        for start in 0..4u32 {
+            // It begins `start` samples behind the first asked, which is one before the hit.
+            let ring = crate::ring::SampleRing::new();
+            let words = preamble(32 + start);
+            (0..).zip(words).for_each(|(n, word)| ring.store(n, word));
+            ring.store(3, 0);
+            let fits = Fits::of(Aligned::new(&ring, 1, 0));
+            let phase = start as i32 + FIRST_FIT;
+            assert_eq!(fits.at(phase), 0);
+            assert_eq!(fits.leading(phase), phase);
+            assert_eq!(fits.leading((phase + 2).min(2)), phase);
+        }
+        assert_eq!(Fits([5; 4]).leading(2), 0);
     }
 
     #[test]

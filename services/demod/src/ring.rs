@@ -42,6 +42,92 @@ impl Default for SampleRing {
     }
 }
 
+/// Words in the ring of the second sampler: 8 KiB, 3.8 ms of samples.
+pub const ARRIVAL_WORDS: usize = 2048;
+/// Words in the ring of levels: 8 KiB, 4.7 ms of conversions.
+pub const LEVEL_WORDS: usize = 2048;
+
+/// The samples of the second sampler, 32 a word, the oldest in the most significant bit.
+#[repr(C, align(8192))]
+pub struct ArrivalRing {
+    /// Sample `n` is in word `n / 32` modulo the ring.
+    pub words: [AtomicU32; ARRIVAL_WORDS],
+}
+
+impl ArrivalRing {
+    /// An all-low ring.
+    pub const fn new() -> Self {
+        Self {
+            words: [const { AtomicU32::new(0) }; ARRIVAL_WORDS],
+        }
+    }
+
+    /// Stores the word of an absolute index.
+    pub fn store(&self, index: u64, word: u32) {
+        self.words[index as usize & (ARRIVAL_WORDS - 1)].store(word, Ordering::Relaxed);
+    }
+
+    /// Eight samples from a place on, if one word has them all: samples in the upper half, a fraction that is not asked in the lower.
+    #[inline(always)]
+    pub(crate) fn eight(&self, place: u32) -> Option<u8> {
+        // Five bits of sample and sixteen of fraction are below the word's.
+        const { assert!(ARRIVAL_WORDS == 1 << (32 - 21)) };
+        let sample = place << 11 >> 27;
+        let word = self.words[place as usize >> 21].load(Ordering::Relaxed);
+        (sample <= 24).then(|| (word << sample >> 24) as u8)
+    }
+}
+
+impl Default for ArrivalRing {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The converter's results, one a word.
+#[repr(C, align(8192))]
+pub struct LevelRing {
+    /// Conversion `n` is in word `n` modulo the ring, 12 bits.
+    pub words: [AtomicU32; LEVEL_WORDS],
+}
+
+impl LevelRing {
+    /// A ring of zeros.
+    pub const fn new() -> Self {
+        Self {
+            words: [const { AtomicU32::new(0) }; LEVEL_WORDS],
+        }
+    }
+
+    /// Stores the conversion of an absolute index.
+    pub fn store(&self, index: u64, code: u32) {
+        self.words[index as usize & (LEVEL_WORDS - 1)].store(code, Ordering::Relaxed);
+    }
+
+    /// The conversion of an absolute index.
+    #[inline(always)]
+    pub fn code(&self, index: u32) -> u32 {
+        self.words[index as usize & (LEVEL_WORDS - 1)].load(Ordering::Relaxed)
+    }
+}
+
+impl Default for LevelRing {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// What the demodulator reads.
+#[derive(Clone, Copy)]
+pub struct Rings<'a> {
+    /// The first sampler's.
+    pub samples: &'a SampleRing,
+    /// The second sampler's.
+    pub arrival: &'a ArrivalRing,
+    /// The converter's.
+    pub level: &'a LevelRing,
+}
+
 /// Reads the ring 32 samples at a time from any sample, one ring access a step.
 #[derive(Clone, Copy)]
 pub(crate) struct Aligned<'a> {

@@ -1,4 +1,4 @@
-//! The trial of a candidate: every phase as it is, then, if none is proved, the most certain one with repair.
+//! The trial of a candidate: every phase as it is, then, if none is proved, the one most certain in its first 16 bits with repair.
 //!
 //! ```text
 //!   phase ─ no such DF ───────────────────────────► BadFormat
@@ -21,7 +21,7 @@ use crate::bits;
 use crate::counters::{Counters, add};
 use crate::heard::Heard;
 use crate::plausible;
-use crate::preamble::mismatches;
+use crate::preamble::Fits;
 use crate::repair::{Flips, Weakest};
 use crate::ring::{Aligned, SampleRing};
 use mode_s::crc24;
@@ -41,7 +41,10 @@ const LEAST_CERTAINTY_QUARTERS: u32 = 7;
 /// The same of a frame worth repairing. Frames of the recordings that could be repaired have seven and more.
 const LEAST_REPAIRED_QUARTERS: u32 = 6;
 
-/// Phases tried around a candidate, the likeliest first: the first hit is early, most frames start a sample or two behind it.
+/// Samples of the preamble.
+const PREAMBLE: i32 = 64;
+
+/// Phases tried around a candidate, the likeliest first: the first hit is early, most frames start a sample or two behind it. The one whose preamble fits best goes before them.
 const PHASES: [i32; 4] = [1, 2, 0, -1];
 
 /// What became of a candidate. In rising order of worth: the best of its phases is the candidate's.
@@ -79,7 +82,7 @@ impl Outcome {
 #[derive(Clone, Copy)]
 pub(crate) struct Tried {
     pub(crate) outcome: Outcome,
-    /// Samples from the candidate's first hit to this phase.
+    /// Samples from the candidate's first hit to where the preamble fits best near the phase that gave the bits.
     pub(crate) phase: i32,
     /// What was repaired.
     pub(crate) flips: Flips,
@@ -116,19 +119,28 @@ pub(crate) fn try_phases(
     heard: &Heard,
     counters: &Counters,
 ) -> Option<Tried> {
+    let fits = Fits::of(from_sample(ring, word, sample.wrapping_sub(1)));
+    let mut likeliest = PHASES[0];
+    for phase in PHASES {
+        if fits.at(phase) < fits.at(likeliest) {
+            likeliest = phase;
+        }
+    }
     let mut best: Option<Tried> = None;
+    // The phase to repair: its certainty, itself.
     let mut repairable = (0, None);
     let mut bytes = [0; LONG_BYTES];
-    for phase in PHASES {
-        let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
-        if mismatches(&mut samples) > MOST_MISMATCHES {
+    let others = PHASES.into_iter().filter(|&phase| phase != likeliest);
+    for phase in core::iter::once(likeliest).chain(others) {
+        if fits.at(phase) > MOST_MISMATCHES {
             continue;
         }
+        let samples = from_sample(ring, word, sample.wrapping_add_signed(phase + PREAMBLE));
         let (outcome, certainty) = demodulate(samples, heard, counters, &mut bytes);
         if outcome.may_be_repaired() && certainty > repairable.0 {
             repairable = (certainty, Some(phase));
         }
-        if best.is_none_or(|so_far| outcome > so_far.outcome) {
+        if best.as_ref().is_none_or(|so_far| outcome > so_far.outcome) {
             let flips = Flips::NONE;
             best = Some(Tried {
                 outcome,
@@ -138,21 +150,19 @@ pub(crate) fn try_phases(
             });
         }
         if outcome == Outcome::Exact {
-            return best;
+            break;
         }
     }
-    if let (Some(tried), (certainty, Some(phase))) = (&mut best, repairable)
-        && !tried.outcome.is_accepted()
-    {
-        let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase));
-        samples.take();
-        samples.take();
-        repair(samples, phase, certainty, heard, counters, tried);
+    let tried = best.as_mut()?;
+    if let (false, Some(phase)) = (tried.outcome.is_accepted(), repairable.1) {
+        let samples = from_sample(ring, word, sample.wrapping_add_signed(phase + PREAMBLE));
+        repair(samples, phase, heard, counters, tried);
     }
+    tried.phase = fits.leading(tried.phase);
     best
 }
 
-/// Demodulates one phase and judges it; gives the sum of its bits' certainties, too. `from` stands at the first bit.
+/// Demodulates one phase and judges it; gives the certainty of its first 16 bits, too. `from` stands at the first bit.
 #[inline(never)]
 fn demodulate(
     from: Aligned,
@@ -161,14 +171,14 @@ fn demodulate(
     bytes: &mut [u8; LONG_BYTES],
 ) -> (Outcome, u32) {
     let mut samples = from;
-    let (first, mut certainty) = bits::byte_and_certainty(&mut samples);
+    let (first, first_sure) = bits::byte_and_certainty(&mut samples);
     // DF 0, 4, 5, 11, 16 to 21 and 24 to 31 exist.
     const FORMATS: u32 = 0xFF3F_0831;
     if FORMATS >> (first >> 3) & 1 == 0 {
         return (Outcome::BadFormat, 0);
     }
-    let (second, sure) = bits::byte_and_certainty(&mut samples);
-    certainty += sure;
+    let (second, second_sure) = bits::byte_and_certainty(&mut samples);
+    let certainty = first_sure + second_sure;
     if certainty < LEAST_CERTAINTY {
         return (Outcome::NoBits, 0);
     }
@@ -176,17 +186,14 @@ fn demodulate(
     bytes[1] = second;
     let length = received(bytes).len();
     for byte in bytes.get_mut(2..length).unwrap_or_default() {
-        let (next, sure) = bits::byte_and_certainty(&mut samples);
-        *byte = next;
-        certainty += sure;
+        *byte = bits::byte(&mut samples);
     }
-    let sure = certainty >= length as u32 * 2 * LEAST_CERTAINTY_QUARTERS;
-    (judge(received(bytes), sure, heard, counters), certainty)
+    (judge(received(bytes), from, heard, counters), certainty)
 }
 
-/// What the parity says of bits that are sure enough for an address alone, or not.
+/// What the parity says of bits; how sure they are is asked only where an address alone vouches for them.
 #[inline(never)]
-fn judge(frame: &[u8], sure: bool, heard: &Heard, counters: &Counters) -> Outcome {
+fn judge(frame: &[u8], from: Aligned, heard: &Heard, counters: &Counters) -> Outcome {
     let df = frame.first().map_or(0, |first| first >> 3);
     let residual = crc24::residual(frame);
     let (vouched, by) = match df {
@@ -206,7 +213,7 @@ fn judge(frame: &[u8], sure: bool, heard: &Heard, counters: &Counters) -> Outcom
     if !heard.knows(vouched) {
         return Outcome::UnknownAddress;
     }
-    if !sure {
+    if bits::certainty(from, frame.len()) < frame.len() as u32 * 2 * LEAST_CERTAINTY_QUARTERS {
         return Outcome::Unsure;
     }
     if by == Outcome::Address && !plausible::fields(frame) {
@@ -215,16 +222,9 @@ fn judge(frame: &[u8], sure: bool, heard: &Heard, counters: &Counters) -> Outcom
     by
 }
 
-/// Repairs the most certain phase, if its parity can be explained. `from` stands at its first bit.
+/// Repairs a phase, if its parity can be explained. `from` stands at its first bit.
 #[inline(never)]
-fn repair(
-    from: Aligned,
-    phase: i32,
-    certainty: u32,
-    heard: &Heard,
-    counters: &Counters,
-    tried: &mut Tried,
-) {
+fn repair(from: Aligned, phase: i32, heard: &Heard, counters: &Counters, tried: &mut Tried) {
     let mut samples = from;
     let mut bytes = [0; LONG_BYTES];
     bytes[0] = bits::byte(&mut samples);
@@ -239,7 +239,7 @@ fn repair(
     } else {
         LEAST_REPAIRED_QUARTERS
     };
-    if bytes[0] >> 3 == 19 || certainty < length as u32 * 2 * least {
+    if bytes[0] >> 3 == 19 || bits::certainty(from, length) < length as u32 * 2 * least {
         return;
     }
     let weakest = Weakest::of(from, length);

@@ -1,13 +1,24 @@
 //! The demodulator on clean and broken pulses: what it must hear, what it must not, and that every candidate is accounted for.
 
 use demod::{
-    Counters, CountersSnapshot, Demodulator, LOOKAHEAD_WORDS, RING_WORDS, RawFrame, SampleRing,
-    TICKS_PER_SAMPLE,
+    ArrivalRing, Calibration, Counters, CountersSnapshot, Demodulator, LOOKAHEAD_WORDS, LevelRing,
+    RING_WORDS, RawFrame, Rings, SampleRing, TICKS_PER_SAMPLE,
 };
 use mode_s::crc24;
 
 /// Samples of a long frame with its preamble.
 const LONG_SAMPLES: usize = 64 + 896;
+
+/// The ring of the first sampler, and silence in the others.
+fn rings(samples: &SampleRing) -> Rings<'_> {
+    static ARRIVAL: ArrivalRing = ArrivalRing::new();
+    static LEVEL: LevelRing = LevelRing::new();
+    Rings {
+        samples,
+        arrival: &ARRIVAL,
+        level: &LEVEL,
+    }
+}
 
 /// A stretch of one-bit samples.
 #[derive(Default)]
@@ -50,27 +61,48 @@ impl Scene {
 
     /// Plays the scene in DMA blocks, and as much silence as lets the last frame through.
     fn hear(&self) -> (Vec<RawFrame>, CountersSnapshot) {
-        let ring = SampleRing::new();
+        let (samples, arrival, level) = (SampleRing::new(), ArrivalRing::new(), LevelRing::new());
+        let rings = Rings {
+            samples: &samples,
+            arrival: &arrival,
+            level: &level,
+        };
         let counters = Counters::new();
-        let mut demodulator = Demodulator::new();
+        // Pulses at the comparator, not at an antenna.
+        let mut demodulator = Demodulator::new(Calibration::without_delay());
         let mut frames = Vec::new();
-        let words = self.samples.chunks(32).map(|chunk| {
-            let bits = chunk.iter().enumerate();
-            bits.fold(0, |word, (at, &high)| word | u32::from(high) << (31 - at))
-        });
-        let silence = std::iter::repeat_n(0, LOOKAHEAD_WORDS as usize + 32);
-        let mut written = 0;
-        for word in words.chain(silence) {
-            ring.store(written, word);
-            written += 1;
-            if written.is_multiple_of(32) {
-                demodulator.run(&ring, written, &counters, &mut |frame| frames.push(frame));
+        let mut second = 0;
+        for written in 1..=self.samples.len().div_ceil(32) + LOOKAHEAD_WORDS as usize + 32 {
+            samples.store(written as u64 - 1, self.word(32 * (written - 1), |at| at));
+            // The second sampler: a sample in 7 ticks where the first has one in 15.
+            while (second + 1) * 32 * 7 <= written * 480 {
+                arrival.store(second as u64, self.word(32 * second, |at| at * 7 / 15));
+                second += 1;
+            }
+            if written % 32 == 0 {
+                let written = written as u64;
+                demodulator.run(rings, written, &counters, &mut || written, &mut |f| {
+                    frames.push(f)
+                });
             }
         }
         let counters = counters.snapshot();
         assert!(counters.balances(), "{counters:?}");
         (frames, counters)
     }
+
+    /// 32 samples of which the scene's index is given.
+    fn word(&self, from: usize, index: impl Fn(usize) -> usize) -> u32 {
+        (from..from + 32).fold(0, |word, at| {
+            let high = self.samples.get(index(at)).copied().unwrap_or(false);
+            word << 1 | u32::from(high)
+        })
+    }
+}
+
+/// The first sampler's sample nearest to an arrival.
+fn sample(frame: &RawFrame) -> u64 {
+    (frame.arrival + TICKS_PER_SAMPLE / 2) / TICKS_PER_SAMPLE
 }
 
 /// Message bytes with parity over them, exclusive-or `mask`.
@@ -104,7 +136,11 @@ fn a_long_frame_is_heard_once_at_its_time_from_every_phase() {
         let (frames, counters) = scene.hear();
         assert_eq!(frames.len(), 1, "start {start}");
         assert_eq!(frames[0].frame.bytes(), df17());
-        assert_eq!(frames[0].arrival, start as u64 * TICKS_PER_SAMPLE);
+        let parts = frames[0].arrival as i64 * 256 + i64::from(frames[0].arrival_parts);
+        // An edge seen at a tick lies half a tick before it on the average; to half a tick, 4 ns.
+        let expected = start as i64 * 15 * 256 - 128;
+        assert!((parts - expected).abs() <= 128, "start {start}: {parts}");
+        assert!(frames[0].arrival_sigma < 256, "{:?}", frames[0]);
         assert_eq!(counters.accepted_exact, 1);
     }
 }
@@ -114,10 +150,7 @@ fn frames_back_to_back_are_all_heard() {
     let mut scene = Scene::silent(20 * LONG_SAMPLES + 100);
     (0..20).for_each(|n| scene.send(50 + n * LONG_SAMPLES, &df17()));
     let (frames, _) = scene.hear();
-    let arrivals: Vec<u64> = frames
-        .iter()
-        .map(|f| f.arrival / TICKS_PER_SAMPLE)
-        .collect();
+    let arrivals: Vec<u64> = frames.iter().map(sample).collect();
     let sent: Vec<u64> = (0..20).map(|n| 50 + n * LONG_SAMPLES as u64).collect();
     assert_eq!(arrivals, sent);
 }
@@ -130,10 +163,7 @@ fn address_parity_counts_only_after_an_exact_frame_of_that_address() {
     scene.send(2000, &df4(0x4D2023));
     scene.send(3000, &df4(0x4D2024));
     let (frames, counters) = scene.hear();
-    let arrivals: Vec<u64> = frames
-        .iter()
-        .map(|f| f.arrival / TICKS_PER_SAMPLE)
-        .collect();
+    let arrivals: Vec<u64> = frames.iter().map(sample).collect();
     assert_eq!(arrivals, [1000, 2000]);
     assert_eq!(counters.accepted_address, 1);
     assert!(counters.unknown_address >= 2);
@@ -143,7 +173,7 @@ fn address_parity_counts_only_after_an_exact_frame_of_that_address() {
 fn an_address_is_forgotten_after_a_minute() {
     let ring = SampleRing::new();
     let counters = Counters::new();
-    let mut demodulator = Demodulator::new();
+    let mut demodulator = Demodulator::default();
     let mut heard = 0;
     let mut written = 0u64;
     for (pause_words, bytes) in [
@@ -155,7 +185,13 @@ fn an_address_is_forgotten_after_a_minute() {
             ring.store(written, 0);
             written += 1;
             if written.is_multiple_of(32) {
-                demodulator.run(&ring, written, &counters, &mut |_| heard += 1);
+                demodulator.run(
+                    rings(&ring),
+                    written,
+                    &counters,
+                    &mut || written,
+                    &mut |_| heard += 1,
+                );
             }
         }
         let mut scene = Scene::silent(2048);
@@ -167,7 +203,13 @@ fn an_address_is_forgotten_after_a_minute() {
             ring.store(written, word);
             written += 1;
         }
-        demodulator.run(&ring, written, &counters, &mut |_| heard += 1);
+        demodulator.run(
+            rings(&ring),
+            written,
+            &counters,
+            &mut || written,
+            &mut |_| heard += 1,
+        );
     }
     // 56 s after the exact frame it is known, 62 s after it is not.
     assert_eq!(heard, 2);
@@ -263,12 +305,19 @@ fn noise_gives_no_frame_and_few_candidates() {
 fn a_lapped_ring_is_counted_and_left_behind() {
     let ring = SampleRing::new();
     let counters = Counters::new();
-    let mut demodulator = Demodulator::new();
-    demodulator.run(&ring, 10_000_000_000, &counters, &mut |_| {});
+    let mut demodulator = Demodulator::default();
     demodulator.run(
-        &ring,
+        rings(&ring),
+        10_000_000_000,
+        &counters,
+        &mut || 10_000_000_000,
+        &mut |_| {},
+    );
+    demodulator.run(
+        rings(&ring),
         10_000_000_000 + 5 * RING_WORDS as u64,
         &counters,
+        &mut || u64::MAX >> 8,
         &mut |_| {},
     );
     let counters = counters.snapshot();

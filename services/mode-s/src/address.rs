@@ -45,8 +45,8 @@ impl Address {
         matches!(self, Address::Icao(_))
     }
 
-    /// The address in bits 9-32 of a DF11, 17, 18 or 19 frame.
-    pub(crate) fn of_aa(frame: &Frame) -> Address {
+    /// The address in bits 9-32 of a DF11, 17, 18 or 19 frame (19: where AF is 0), true as far as the frame's parity is.
+    pub fn of_aa(frame: &Frame) -> Address {
         let aa = frame.bits(9, 32);
         if frame.df() == crate::Df::NON_TRANSPONDER && !cf_names_icao(frame) {
             Address::NonIcao(aa)

@@ -56,6 +56,7 @@ pub use frame_report::{Bits, FrameReport, FrameTimes};
 pub use gnss::Gnss;
 pub use moment::{DAY_MS, Moment};
 pub use statistics::Statistics;
+pub use text::whole_decibels;
 
 /// The slice is too short for the message. Nothing of its content may be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

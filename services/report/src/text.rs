@@ -7,7 +7,7 @@ use mode_s::ModeACode;
 const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
 
 /// Whole decibels of hundredths, rounded.
-pub(crate) fn whole_decibels(hundredths: i16) -> i32 {
+pub fn whole_decibels(hundredths: i16) -> i32 {
     (i32::from(hundredths) + 50).div_euclid(100)
 }
 

@@ -1,7 +1,7 @@
 //! The error of the time of arrival against a scene's truth.
 
-use super::Decoded;
-use super::native::{self, Rendered};
+use super::native::{self, FLOOR_OVER_NOISE_DB, Rendered};
+use demod::RawFrame;
 use std::collections::HashMap;
 use twin::front_end::Slicer;
 use twin::source::scene::traffic::{Range, Traffic};
@@ -13,6 +13,8 @@ const STEP_PS: u64 = 8_000;
 const TRANSMITTERS: usize = 100;
 const SEED: u64 = 120 * 1090;
 const PS_A_NS: f64 = 1000.0;
+/// Nanoseconds in 1/256 of a tick of 120 MHz.
+pub const NS_A_PART: f64 = 1000.0 / 120.0 / 256.0;
 
 /// Frames that arrive anywhere between two samples, and their level at the antenna.
 pub fn air(number: u64, frames: usize, snr_db: Range, tolerances: Tolerances) -> (Scene, Rendered) {
@@ -31,18 +33,37 @@ pub fn air(number: u64, frames: usize, snr_db: Range, tolerances: Tolerances) ->
     (scene, level)
 }
 
+/// The error of each decoded frame's arrival: against the first pulse, as Annex 10 defines the time, or against the data block, which a transponder may send
+/// 50 ns early or late, the same at every receiver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Error {
+    pub first_pulse_ns: f64,
+    pub data_block_ns: f64,
+    /// The uncertainty that the receiver states, one sigma.
+    pub stated_ns: f64,
+}
+
 /// The error of each decoded frame's arrival.
-pub fn errors_ns(scene: &Scene, level: &Rendered, slicer: Slicer) -> Vec<f64> {
+pub fn errors(scene: &Scene, level: &Rendered, slicer: Slicer) -> Vec<Error> {
     let noise_dbm = scene.noise_dbm.unwrap_or(f32::NEG_INFINITY);
-    let heard: Vec<Decoded> = native::run(level, slicer, noise_dbm).0;
-    let truth: HashMap<&[u8], u64> = scene
+    let trigger_level_mv = native::trigger_level_mv(slicer, noise_dbm, FLOOR_OVER_NOISE_DB);
+    let (heard, _) = native::raw_frames(level, slicer, trigger_level_mv);
+    let truth: HashMap<&[u8], (u64, i64)> = scene
         .emissions
         .iter()
-        .filter_map(|emission| Some((emission.frame()?.bytes(), emission.arrival_ps())))
+        .filter_map(|emission| {
+            let data_ps = scene.fleet.get(emission.transmitter).data_ps;
+            Some((emission.frame()?.bytes(), (emission.arrival_ps(), data_ps)))
+        })
         .collect();
-    let error = |frame: &Decoded| {
-        let sent = *truth.get(frame.bytes.as_slice())?;
-        Some((frame.arrival_ps? - sent as i64) as f64 / PS_A_NS)
+    let error = |raw: &RawFrame| {
+        let (sent, data_ps) = *truth.get(raw.frame.bytes())?;
+        let off = native::arrival_ps(raw) - sent as i64;
+        Some(Error {
+            first_pulse_ns: off as f64 / PS_A_NS,
+            data_block_ns: (off - data_ps) as f64 / PS_A_NS,
+            stated_ns: f64::from(raw.arrival_sigma) * NS_A_PART,
+        })
     };
     heard.iter().filter_map(error).collect()
 }

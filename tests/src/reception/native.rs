@@ -3,7 +3,7 @@
 //! The level is worked out once and played through each slicer, because a scene's waves cost as much as all else.
 
 use super::Decoded;
-use demod::CountersSnapshot;
+use demod::{Calibration, CountersSnapshot, RawFrame};
 use std::sync::Arc;
 use twin::front_end::detector::millivolt;
 use twin::front_end::{FrontEnd, Level, Player, Slicer};
@@ -14,6 +14,8 @@ use twin::native::{self, Options};
 pub const FLOOR_OVER_NOISE_DB: f32 = 5.0;
 /// Picoseconds a tick, times three.
 const THREE_TICKS_PS: u64 = 25_000;
+/// Parts of a tick in an arrival.
+const PARTS: u64 = 256;
 
 /// The slicers that are reported apart, by the names of `--slicer`.
 pub const SLICERS: [(&str, Slicer); 3] = [
@@ -78,6 +80,14 @@ pub fn trigger_level_mv(slicer: Slicer, noise_dbm: f32, floor_db: f32) -> f64 {
     }
 }
 
+/// The receiver's constants: only the current board's slicer has known delays.
+fn calibration(slicer: Slicer) -> Calibration {
+    match slicer {
+        Slicer::RcFollowing => Calibration::ADSBEE_1090,
+        Slicer::Fixed | Slicer::PeakFollowing => Calibration::without_delay(),
+    }
+}
+
 /// What a slicer at its usual trigger level and the native engine make of it.
 pub fn run(level: &Rendered, slicer: Slicer, noise_dbm: f32) -> (Vec<Decoded>, CountersSnapshot) {
     run_at(
@@ -93,18 +103,34 @@ pub fn run_at(
     slicer: Slicer,
     trigger_level_mv: f64,
 ) -> (Vec<Decoded>, CountersSnapshot) {
+    let (frames, counters) = raw_frames(level, slicer, trigger_level_mv);
+    let decoded = |raw: &RawFrame| Decoded {
+        bytes: raw.frame.bytes().to_vec(),
+        repaired: raw.repaired(),
+        arrival_ps: Some(arrival_ps(raw)),
+    };
+    (frames.iter().map(decoded).collect(), counters)
+}
+
+/// The frames as the demodulator gives them.
+pub fn raw_frames(
+    level: &Rendered,
+    slicer: Slicer,
+    trigger_level_mv: f64,
+) -> (Vec<RawFrame>, CountersSnapshot) {
     let mut player = Player::new(level.clone(), &FrontEnd::with_slicer(slicer));
     let options = Options {
         trigger_level_mv: Some(trigger_level_mv),
+        calibration: calibration(slicer),
         ..Options::default()
     };
     let mut frames = Vec::new();
-    let counters = native::run(&mut player, options, &mut |raw| {
-        frames.push(Decoded {
-            bytes: raw.frame.bytes().to_vec(),
-            repaired: raw.repaired(),
-            arrival_ps: Some((raw.arrival * THREE_TICKS_PS / 3) as i64),
-        });
-    });
+    let counters = native::run(&mut player, options, &mut |raw| frames.push(raw));
     (frames, counters)
+}
+
+/// A frame's arrival with its fraction, ps.
+pub fn arrival_ps(raw: &RawFrame) -> i64 {
+    let parts = raw.arrival * PARTS + u64::from(raw.arrival_parts);
+    (parts * THREE_TICKS_PS / (3 * PARTS)) as i64
 }

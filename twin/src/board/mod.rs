@@ -44,9 +44,9 @@ use crate::source::random::Random;
 const UNIQUE_ID: [u8; 8] = *b"SQUITTER";
 /// Cycles of one capture word: 32 samples of 15 cycles.
 const WORD_CYCLES: u64 = 480;
-/// A playback starts on a multiple of so many capture words: of the 64 at which the demodulator steers its gate, and of the 7 after which the sampler of
-/// arrivals (a sample in 7 cycles) stands at the same phase of a word again.
-const PLAY_STEP_WORDS: u64 = 64 * 7;
+/// A playback starts on a multiple of so many capture words: of the 64 at which the demodulator steers its gate, and of the 7 and the 109 after which the
+/// second sampler (a sample in 7 cycles) and the converter (one in 272.5) stand at the same phase of a word again. 195 ms.
+const PLAY_STEP_WORDS: u64 = 64 * 7 * 109;
 /// Cycles between a pin and the sampler that reads it.
 const SYNC_CYCLES: u64 = 2;
 /// The system clock the images set; ticks are defined by it.
@@ -361,6 +361,9 @@ impl Board {
             start_tick: words * WORD_CYCLES,
         };
         self.playback = Some(playback);
+        // The wait belongs to nobody's time of the air.
+        let ahead = start.saturating_sub(self.chip.now() + WORD_CYCLES);
+        self.run_cycles(ahead)?;
         Ok(playback)
     }
 

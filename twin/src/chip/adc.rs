@@ -109,6 +109,8 @@ pub struct Adc {
     pub die_celsius: f64,
     /// An input without a source was converted.
     pub unconnected: Option<usize>,
+    /// Tick at which START_MANY last began, once it did.
+    first_start: Option<u64>,
 }
 
 impl Default for Adc {
@@ -128,6 +130,7 @@ impl Default for Adc {
             inputs: [None, None, None, None],
             die_celsius: 27.0,
             unconnected: None,
+            first_start: None,
         }
     }
 }
@@ -156,6 +159,11 @@ impl Adc {
     /// clk_adc or clk_sys changed at cycle `now`.
     pub fn set_clock(&mut self, adc_hz: u64, sys_hz: u64, now: u64) {
         self.clock.set(adc_hz, sys_hz, now);
+    }
+
+    /// Cycle at which the first conversion of the free run was held.
+    pub fn running_since(&self) -> Option<u64> {
+        self.first_start.map(|tick| self.clock.cycle_of(tick))
     }
 
     /// Cycle of the next thing that happens by itself.
@@ -338,6 +346,7 @@ impl Adc {
         } else if self.next_start.is_none() {
             self.carry = 0;
             self.next_start = Some(tick);
+            self.first_start = Some(tick);
             self.advance(now);
         }
     }

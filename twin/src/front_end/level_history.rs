@@ -4,9 +4,10 @@
 //! at; a question about an instant runs the detector over that block again, which costs nothing until someone asks.
 
 use super::detector::Detector;
+use std::collections::VecDeque;
 
-/// Blocks kept: the chip lags up to 100 µs of look-ahead and a block, and a block may be as short as 16 µs.
-const BLOCKS: usize = 16;
+/// How long a level is remembered behind the newest, ps: the chip lags 100 µs of look-ahead and a block behind it, the native engine 128 µs and a block.
+const REMEMBERED_PS: u64 = 400_000_000;
 
 struct Block {
     start_ps: u64,
@@ -16,64 +17,77 @@ struct Block {
     aims_mv: Vec<f32>,
 }
 
-/// The last blocks, the oldest at `next`.
+/// The last blocks, the oldest first.
 pub(super) struct LevelHistory {
     step_ps: u64,
-    blocks: Vec<Block>,
-    next: usize,
+    blocks: VecDeque<Block>,
+    /// Up to where blocks were forgotten.
+    forgotten_ps: u64,
 }
 
 impl LevelHistory {
     pub(super) fn new(step_ps: u64) -> Self {
         Self {
             step_ps,
-            blocks: Vec::new(),
-            next: 0,
+            blocks: VecDeque::new(),
+            forgotten_ps: 0,
         }
     }
 
     /// A block begins at `start_ps` with the detector so, and it will aim at these outputs one after the other.
     pub(super) fn note(&mut self, detector: &Detector, start_ps: u64, aims_mv: &[f32]) {
         let end_ps = start_ps + self.step_ps * aims_mv.len() as u64;
-        let block = self.begin(detector, start_ps, end_ps);
-        block.aims_mv.extend_from_slice(aims_mv);
+        let mut aims = self.forget(start_ps);
+        aims.extend_from_slice(aims_mv);
+        self.begin(detector, start_ps, end_ps, aims);
     }
 
     /// The block of so many samples that begins at `start_ps` moves nothing.
     pub(super) fn stands(&mut self, detector: &Detector, start_ps: u64, samples: usize) {
         let end_ps = start_ps + self.step_ps * samples as u64;
-        let last = (self.next + self.blocks.len()).checked_sub(1);
-        let last = last.and_then(|n| self.blocks.get_mut(n % BLOCKS));
+        let last = self.blocks.back_mut();
         match last.filter(|b| b.aims_mv.is_empty() && b.end_ps == start_ps) {
             Some(still) => still.end_ps = end_ps,
-            None => drop(self.begin(detector, start_ps, end_ps)),
+            None => {
+                let aims = self.forget(start_ps);
+                self.begin(detector, start_ps, end_ps, aims);
+            }
         }
     }
 
-    /// The latest block, empty.
-    fn begin(&mut self, detector: &Detector, start_ps: u64, end_ps: u64) -> &mut Block {
-        if self.blocks.len() < BLOCKS {
-            self.blocks.push(Block {
-                start_ps,
-                end_ps,
-                detector: detector.clone(),
-                aims_mv: Vec::new(),
-            });
-            let last = self.blocks.len() - 1;
-            return &mut self.blocks[last];
-        }
-        let block = &mut self.blocks[self.next];
-        self.next = (self.next + 1) % BLOCKS;
-        (block.start_ps, block.end_ps) = (start_ps, end_ps);
-        block.detector = detector.clone();
-        block.aims_mv.clear();
-        block
+    fn begin(&mut self, detector: &Detector, start_ps: u64, end_ps: u64, aims_mv: Vec<f32>) {
+        self.blocks.push_back(Block {
+            start_ps,
+            end_ps,
+            detector: detector.clone(),
+            aims_mv,
+        });
     }
 
-    /// The output at an instant, mV.
+    /// Drops what is long past at `now_ps`; gives an empty list, with the memory of a dropped one where there is one.
+    fn forget(&mut self, now_ps: u64) -> Vec<f32> {
+        let mut aims = Vec::new();
+        let long_past = |b: &mut Block| b.end_ps + REMEMBERED_PS < now_ps;
+        while let Some(block) = self.blocks.pop_front_if(long_past) {
+            self.forgotten_ps = block.end_ps;
+            aims = block.aims_mv;
+        }
+        aims.clear();
+        aims
+    }
+
+    /// The output at an instant, mV; `None` where it was not produced yet, or at the end of all.
+    ///
+    /// # Panics
+    /// Where it is long past: a level that nobody knows any more must not become one of silence.
     pub(super) fn detector_mv(&self, at_ps: u64) -> Option<f32> {
-        let holds = |b: &&Block| (b.start_ps..b.end_ps).contains(&at_ps);
-        let block = self.blocks.iter().find(holds)?;
+        assert!(
+            at_ps >= self.forgotten_ps,
+            "the level at {at_ps} ps is forgotten: {} ps were produced since",
+            self.blocks.back().map_or(0, |last| last.end_ps - at_ps)
+        );
+        let after = self.blocks.partition_point(|b| b.end_ps <= at_ps);
+        let block = self.blocks.get(after)?;
         let mut detector = block.detector.clone();
         let steps = ((at_ps - block.start_ps) / self.step_ps) as usize;
         for aim in block.aims_mv.iter().take(steps + 1) {
@@ -111,16 +125,28 @@ mod tests {
         assert!((at(39 * 512 * STEP_PS) - millivolt(-95.0)).abs() < 0.1);
     }
 
-    #[test]
-    fn what_is_long_past_or_not_produced_is_not_known() {
+    fn played(blocks: u64) -> Chain {
         let mut chain = Chain::new(&FrontEnd::ADSBEE_1090, STEP_PS);
         let mut edges = Vec::new();
-        for block in 0..40 {
+        for block in 0..blocks {
             let mut dbm = [-90.0 + block as f32 % 2.0; 512];
             chain.feed(&mut dbm, &mut edges);
         }
-        assert_eq!(chain.detector_mv(0), None);
-        assert_eq!(chain.detector_mv(40 * 512 * STEP_PS), None);
-        assert!(chain.detector_mv(39 * 512 * STEP_PS).is_some());
+        chain
+    }
+
+    #[test]
+    fn four_tenths_of_a_millisecond_are_known_and_the_future_is_not() {
+        let chain = played(40);
+        let end = 40 * 512 * STEP_PS;
+        assert_eq!(chain.detector_mv(end), None);
+        assert!(chain.detector_mv(end - STEP_PS).is_some());
+        assert!(chain.detector_mv(end - 400_000_000).is_some());
+    }
+
+    #[test]
+    #[should_panic(expected = "is forgotten")]
+    fn what_is_long_past_is_an_error_and_no_silence() {
+        played(40).detector_mv(0);
     }
 }

@@ -19,6 +19,7 @@ pub mod player;
 pub mod slicer;
 pub mod trigger_level;
 
+use crate::source::random::Random;
 pub use parameters::{FrontEnd, Slicer};
 pub use player::{Level, Player};
 
@@ -46,6 +47,17 @@ pub trait PulseSource {
     fn detector_mv(&self, _at_ps: u64) -> Option<f32> {
         None
     }
+}
+
+/// Noise of the RSSI net at its ADC input, mV rms (assumed: two steps of the ADC).
+const RSSI_NOISE_MV: f64 = 1.6;
+
+/// The voltage of the RSSI net at a tick of the playback, mV: the detector's output and a little noise of its own. The twin's ADC and the native engine must
+/// agree, so both use this.
+pub fn rssi_mv(detector_mv: Option<f32>, tick: u64) -> f64 {
+    let level = detector_mv.unwrap_or(parameters::LEAST_MILLIVOLT);
+    let noise = Random::new(tick ^ 0x5251).normal() * RSSI_NOISE_MV;
+    (f64::from(level) + noise).clamp(0.0, trigger_level::SUPPLY_MV)
 }
 
 /// The first tick of the 120 MHz clock at which an edge is seen: its time in ticks, rounded up.

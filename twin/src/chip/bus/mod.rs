@@ -63,6 +63,9 @@ use super::usb::{DPRAM, Usb};
 use super::usb_host::UsbHost;
 use super::watchdog::Watchdog;
 
+/// How far PIO runs in one go while something plays, cycles: 100 µs.
+const LOOK_AHEAD: u64 = 12_000;
+
 /// SRAM: four striped 64 KiB banks and two of 4 KiB (datasheet 2.6.2).
 pub const SRAM: usize = 264 * 1024;
 pub const SRAM_BASE: u32 = 0x2000_0000;
@@ -373,9 +376,6 @@ impl Bus {
             self.now = to;
             return;
         }
-        if self.next_pio() <= to {
-            self.pins.look_ahead(to);
-        }
         loop {
             let event = self.next_event();
             let mut limit = event.min(to);
@@ -386,6 +386,9 @@ impl Bus {
             let (a, b) = (self.pio[0].next_tick(), self.pio[1].next_tick());
             let mut visible = false;
             if a.min(b) <= limit {
+                // Never far ahead: the front end forgets levels that the converter may still ask for.
+                self.pins.look_ahead(limit.min(self.now + LOOK_AHEAD));
+                limit = limit.min(self.now + LOOK_AHEAD);
                 let (first, other) = if b < a { (1, a) } else { (0, b) };
                 let bound = limit.min(other);
                 limit = self.pio[first].run(bound, &mut self.pins);

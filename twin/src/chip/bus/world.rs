@@ -4,16 +4,13 @@ use super::Bus;
 use crate::chip::adc::{AnalogInput, Steady};
 use crate::chip::outside::{Outside, Wires};
 use crate::chip::pins::Played;
-use crate::front_end::parameters::LEAST_MILLIVOLT;
+use crate::front_end::rssi_mv;
 use crate::front_end::trigger_level::{SUPPLY_MV, TriggerLevel};
-use crate::source::random::Random;
 use serde::{Deserialize, Serialize};
 
 use crate::snapshot::Part;
 
 const PS_A_SECOND: u128 = 1_000_000_000_000;
-/// Noise of the RSSI net at its ADC input, mV rms (assumed: two steps of the ADC).
-const RSSI_NOISE_MV: f64 = 1.6;
 
 /// A trigger level: the pin whose PWM makes it, the ADC channel that reads it back, the voltage behind its RC.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -189,8 +186,10 @@ impl Bus {
 
     /// The voltage of the RSSI net at this instant, mV: the detector's level and a little noise of its own.
     pub fn rssi_mv(&mut self) -> f64 {
-        let level = self.pins.detector_mv(self.now).unwrap_or(LEAST_MILLIVOLT);
-        let noise = Random::new(self.now ^ 0x5251).normal() * RSSI_NOISE_MV;
-        (f64::from(level) + noise).clamp(0.0, SUPPLY_MV)
+        self.pins.look_ahead(self.now);
+        rssi_mv(
+            self.pins.detector_mv(self.now),
+            self.pins.since_playback(self.now),
+        )
     }
 }

@@ -190,6 +190,12 @@ impl Pins {
         self.playback.as_ref()?.detector_mv(now)
     }
 
+    /// Cycles since playback time zero; of the chip's own when nothing is played.
+    pub fn since_playback(&self, now: u64) -> u64 {
+        let start = self.playback.as_ref().map_or(0, |p| p.started_at());
+        now.wrapping_sub(start)
+    }
+
     /// The system clock has another rate from cycle `now`.
     pub fn clock_changed(&mut self, now: u64, hz: u64) {
         self.hz = hz;

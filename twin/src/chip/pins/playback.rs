@@ -87,6 +87,11 @@ impl Playback {
         self.anchor.0 + cycles
     }
 
+    /// Cycle of playback time zero, while the clock keeps its rate.
+    pub(super) fn started_at(&self) -> u64 {
+        self.anchor.0
+    }
+
     /// Nominal time since the start at a cycle that is not before the anchor, rounded down.
     fn nominal_ps(&self, cycle: u64) -> u64 {
         let cycles = cycle.saturating_sub(self.anchor.0);

@@ -1,0 +1,152 @@
+//! What core 0 sees of the air, twenty times a second: the noise floor, and the samples that steer the trigger level.
+//!
+//! ```text
+//!   64 conversions of RSSI ─ noise floor ─ a frame's quality
+//!   64 words of samples ───┐
+//!   frames accepted ───────┴─ every fifth time, under LEARN: steering ─ PWM
+//! ```
+//! `adsbee_1090` has one trigger level, and its slicer is AC-coupled: the threshold rides on the level's average. `hi` is the level; `lo` is the lowest that LEARN may choose.
+
+use core::sync::atomic::Ordering;
+use demod::{Calibration, LEVEL_WORDS, LevelRing, SampleRing};
+use drivers::trigger_level::{DEFAULT_MV, FULL_SCALE_MV, TriggerLevel};
+use hal::board::TriggerLevelPwm;
+use hal::level_converter::LevelConverter;
+use settings::{Settings, choices::TriggerMode};
+use trigger::{Input, Law, NoiseFloor, Observed, SAMPLES, Steering};
+
+/// Words of samples a look: 256 us.
+const WORDS: u32 = 64;
+/// Looks a step of the steering: four steps a second.
+const LOOKS_A_STEP: u32 = 5;
+/// ADC channel of TRIGGER_LEVEL_ADC: GPIO 27.
+const TRIGGER_CHANNEL: u8 = 1;
+/// Lowest and highest level of LEARN until `lo` says otherwise, mV: 5 dB to both sides of where the model's bias is.
+const LEARN_MV: (u16, u16) = (1200, 1370);
+
+/// The watch over the air.
+pub struct Air {
+    converter: LevelConverter,
+    pwm: TriggerLevel<TriggerLevelPwm>,
+    samples: &'static SampleRing,
+    levels: &'static LevelRing,
+    floor: NoiseFloor,
+    low_mv: u16,
+    high_mv: u16,
+    steering: Option<Steering>,
+    observed: Observed,
+    looks: u32,
+    frames_before: u32,
+    /// High samples and crossings of the last step, per thousand samples, and steps made: what `AT+STATS?` tells.
+    pub seen: Seen,
+}
+
+/// The air in numbers.
+#[derive(Clone, Copy, Default)]
+pub struct Seen {
+    pub high_permille: u32,
+    pub crossings_a_second: u32,
+    pub steps: u32,
+}
+
+impl Air {
+    /// Over the running rings, at the default level.
+    pub fn new(
+        converter: LevelConverter,
+        pwm: TriggerLevel<TriggerLevelPwm>,
+        samples: &'static SampleRing,
+        levels: &'static LevelRing,
+    ) -> Self {
+        Self {
+            converter,
+            pwm,
+            samples,
+            levels,
+            floor: NoiseFloor::new(),
+            low_mv: LEARN_MV.0,
+            high_mv: DEFAULT_MV,
+            steering: None,
+            observed: Observed::default(),
+            looks: 0,
+            frames_before: 0,
+            seen: Seen::default(),
+        }
+    }
+
+    /// A look, twenty times a second: `words` written to the ring so far, `frames` accepted so far.
+    pub fn look(&mut self, words: u32, frames: u32) {
+        let mut codes = [0; SAMPLES];
+        let first = self.looks.wrapping_mul(SAMPLES as u32) as usize;
+        for (at, code) in codes.iter_mut().enumerate() {
+            let index = (first + at) & (LEVEL_WORDS - 1);
+            *code = (self.levels.words[index].load(Ordering::Relaxed) & 0xFFF) as u16;
+        }
+        self.floor.take(&mut codes);
+        for back in 1..=WORDS {
+            self.observed
+                .add(self.samples.word(words.wrapping_sub(back)));
+        }
+        self.looks = self.looks.wrapping_add(1);
+        if self.looks.is_multiple_of(LOOKS_A_STEP) {
+            self.step(frames);
+        }
+    }
+
+    fn step(&mut self, frames: u32) {
+        let observed = core::mem::take(&mut self.observed);
+        let input = Input {
+            observed,
+            frames: frames.wrapping_sub(self.frames_before),
+        };
+        self.frames_before = frames;
+        let samples = observed.samples.max(1);
+        self.seen = Seen {
+            high_permille: observed.high * 1000 / samples,
+            crossings_a_second: observed.crossings * (8_000_000 / samples),
+            steps: self.seen.steps + u32::from(self.steering.is_some()),
+        };
+        if let Some(steering) = &mut self.steering {
+            self.high_mv = steering.step(input);
+            self.apply();
+        }
+    }
+
+    fn apply(&mut self) {
+        // A duty that cannot be set is not a thing on this chip: the error type is empty.
+        let Ok(()) = self.pwm.set_mv(self.high_mv);
+    }
+
+    /// Acts on `TL_SET`: two levels, or LEARN from where the level stands.
+    pub fn follow(&mut self, settings: &Settings) {
+        self.low_mv = settings.tl_lo_mv;
+        match settings.tl_mode {
+            TriggerMode::Set => {
+                self.high_mv = settings.tl_hi_mv;
+                self.steering = None;
+                self.apply();
+            }
+            TriggerMode::Learn => {
+                let limits = (self.low_mv, LEARN_MV.1);
+                self.steering = Some(Steering::new(Law::Share, self.high_mv, limits));
+            }
+        }
+    }
+
+    /// The levels set, mV.
+    pub fn levels_mv(&self) -> (u16, u16) {
+        (self.low_mv, self.high_mv)
+    }
+
+    /// The trigger level as it stands at the comparator, mV.
+    pub fn read_mv(&mut self) -> u16 {
+        let code = u32::from(self.converter.read(TRIGGER_CHANNEL));
+        (code * u32::from(FULL_SCALE_MV) / 4096) as u16
+    }
+
+    /// The noise floor at the antenna, 1/100 dBm.
+    pub fn floor_cdbm(&self) -> Option<i16> {
+        self.floor
+            .code()
+            .map(|code| Calibration::ADSBEE_1090.of_code(code))
+    }
+}

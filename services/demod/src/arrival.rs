@@ -1,0 +1,318 @@
+//! The time of arrival: where all pulses of a frame begin, from the second sampler.
+//!
+//! ```text
+//!   first sampler    a sample in 15 ticks: every edge of a frame falls on the same place between two samples
+//!   second sampler   a sample in  7 ticks: a bit is 120 = 17 * 7 + 1 ticks, so the place walks, and seven bits see every tick
+//!
+//!   expected edge        e
+//!   samples      0 0 0 0 | 1 1 1 1      eight around it; the edge lies behind as many of them as are low
+//! ```
+//! Asked are the leading edges of data pulses that begin in silence: every 0, and every 1 behind a 1 (a 1 behind a 0 continues its pulse). Trailing edges are not: a
+//! logarithmic detector falls slowly, and a pulse's width may be 50 ns off (Annex 10 Volume IV, 3.1.2.2.1). Nor are the preamble's: a slicer that follows the
+//! level has not settled there.
+//!
+//! A window that is not low before and high behind shows no edge and is passed over, as is one that a single word of the ring does not hold: a second word would cost as much as another edge. Each edge gives its distance from where the first sampler expects it; the mean moves the arrival, the scatter is its uncertainty.
+//! Only the first [`MOST_EDGES`] edges of the first 56 bits are asked: more would cost more than they tell, and a sender's clock 50 ppm off moves their mean by 2 ns at most.
+//!
+//! What is told is the preamble's first pulse as the data block places it: a transponder may send that block 50 ns early or late (Annex 10 Volume IV, 3.1.2.2.5.1), the
+//! same at every receiver.
+//!
+//! The comparator's edge lies where the level crosses the slicer's threshold, not at half the pulse's amplitude; how far from it depends on how far the level is over the
+//! noise, and the board's [`Calibration`] knows that.
+//!
+//! Fixed point: a tick (8.33 ns) has 256 parts; a place in the ring has 16 bits of samples and 16 of fraction, so that it wraps as the ring does.
+//! Budget: 50 cycles an edge, 1 600 in all; the loop is written so that it stays in the core's eight registers.
+
+use crate::calibration::Calibration;
+use crate::grid::Grid;
+use crate::ring::{ARRIVAL_WORDS, ArrivalRing};
+
+/// Ticks of a sample of the second sampler.
+pub const ARRIVAL_TICKS_PER_SAMPLE: u32 = 7;
+
+/// Ticks from the preamble's leading edge to the first bit: 8 µs.
+const PREAMBLE_TICKS: u64 = 960;
+/// Bits of fraction of a place in the ring.
+const FRACTION: u32 = 16;
+const _: () = assert!(ARRIVAL_WORDS as u64 * 32 == 1 << (32 - FRACTION));
+/// A bit, and half of one, as places: 120 and 60 ticks of 7.
+const BIT: u32 = place(120);
+const HALF_BIT: u32 = place(60);
+/// Of the eight samples around an edge those before the sample at or before it, as places.
+const BEFORE: u32 = 3 << FRACTION;
+/// Bits of fraction of an edge's distance: a sample has 128.
+const OFF_FRACTION: u32 = 7;
+/// Parts of a tick in the least step of such a distance: 7 ticks times 256 over 128.
+const PARTS_A_STEP: i32 = 14;
+/// A distance is kept from so many samples before the window's first: it is never negative, and 4 samples where an edge lies right where it is expected.
+const BIAS: u32 = 1 << OFF_FRACTION >> 1;
+const CENTRE: i32 = 4 << OFF_FRACTION;
+/// Bits asked in a go, and the first bit of each go: behind the first byte, in which a slicer that follows the level has not settled yet, to the end of the first 56 bits.
+const GO_BITS: u32 = 24;
+const FIRST_BIT: u32 = 8;
+/// Edges asked at most.
+const MOST_EDGES: u32 = 20;
+/// Fewest edges that are an arrival.
+const LEAST_EDGES: u32 = 8;
+/// A mean beyond this is measured again from where it points, parts of a tick: windows at whose rim edges were missed. A sample.
+const RECENTRE: u32 = 7 * 256;
+/// Least uncertainty, parts of a tick: what transponders' rise times of 50 to 100 ns and the grid of whole ticks leave (4.2 ns).
+const LEAST_SIGMA: u32 = 128;
+/// The same where the level is not known, and with it the delay: 20 ns.
+const UNLEVELLED_SIGMA: u32 = 614;
+/// Uncertainty of an arrival from the first sampler alone, parts of a tick: 15 ticks / √12.
+pub(crate) const COARSE_SIGMA: u16 = 1109;
+
+/// So many ticks as a place, rounded.
+const fn place(ticks: u32) -> u32 {
+    ((ticks << FRACTION) + ARRIVAL_TICKS_PER_SAMPLE / 2) / ARRIVAL_TICKS_PER_SAMPLE
+}
+
+/// When a frame came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Arrival {
+    /// Ticks of 120 MHz since the first sample, rounded down.
+    pub ticks: u64,
+    /// The rest, in 1/256 of a tick.
+    pub parts: u8,
+    /// Standard uncertainty, in 1/256 of a tick.
+    pub sigma: u16,
+}
+
+impl Arrival {
+    /// At the antenna, of a frame that stands so far over the noise (1/100 dB).
+    pub(crate) fn corrected(self, calibration: &Calibration, over_floor: Option<i32>) -> Self {
+        if self.sigma == COARSE_SIGMA {
+            return self;
+        }
+        let Some(over) = over_floor else {
+            let sigma = u32::from(self.sigma);
+            let sigma = root(sigma * sigma + UNLEVELLED_SIGMA * UNLEVELLED_SIGMA) as u16;
+            return Self { sigma, ..self };
+        };
+        let parts = (self.ticks << 8 | u64::from(self.parts))
+            .wrapping_add_signed(-i64::from(calibration.delay(over)));
+        Self {
+            ticks: parts >> 8,
+            parts: parts as u8,
+            sigma: self.sigma,
+        }
+    }
+}
+
+/// The second sampler's samples, in ticks.
+pub(crate) type Samples = Grid<ARRIVAL_TICKS_PER_SAMPLE, 2048, 19>;
+
+/// Sums over edges.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    /// Edges in the upper half, their distances in the lower: steps of 1/128 sample. 20 times 1024 fit.
+    packed: u32,
+    squares: u32,
+}
+
+const AN_EDGE: u32 = 1 << 16;
+
+/// Low samples of a window of eight that shows an edge, low before and high behind; 0 for any other.
+static LOWS: [u8; 256] = lows();
+/// 4096 over a number of edges: the core has no division.
+static SHARES: [u16; MOST_EDGES as usize + 1] = shares();
+
+const fn lows() -> [u8; 256] {
+    let mut table = [0; 256];
+    let mut window = 0;
+    while window < 256 {
+        if window & 0x81 == 0x01 {
+            table[window] = (window as u8).count_zeros() as u8;
+        }
+        window += 1;
+    }
+    table
+}
+
+const fn shares() -> [u16; MOST_EDGES as usize + 1] {
+    let mut table = [0; MOST_EDGES as usize + 1];
+    let mut edges = 1;
+    while edges < table.len() {
+        table[edges] = (4096 / edges) as u16;
+        edges += 1;
+    }
+    table
+}
+
+/// Where the comparator showed a frame with these bits, which the first sampler saw begin at `coarse` (ticks).
+#[inline(never)]
+pub(crate) fn measure(ring: &ArrivalRing, samples: &Samples, coarse: u64, frame: &[u8]) -> Arrival {
+    let mut expected = (coarse << 8) as i64;
+    let mut sigma = u32::from(COARSE_SIGMA);
+    for _ in 0..2 {
+        let ticks = (expected >> 8) as u64;
+        let (sample, rest) = samples.last(ticks + PREAMBLE_TICKS);
+        let sums = leading_edges(ring, (sample << FRACTION) + rest * place(1), frame);
+        let edges = sums.packed / AN_EDGE;
+        let (true, Some(&share)) = (edges >= LEAST_EDGES, SHARES.get(edges as usize)) else {
+            break;
+        };
+        let share = u32::from(share);
+        // Both with eight bits of fraction less than they could have: the squares must fit.
+        let mean = ((sums.packed % AN_EDGE) * share) >> 12;
+        let off = (sums.packed % AN_EDGE) as i32 - CENTRE * edges as i32;
+        let parts = (off * PARTS_A_STEP * share as i32) >> 12;
+        expected = ((ticks as i64) << 8) + i64::from(parts);
+        let mean_square = ((sums.squares >> 4) * share) >> 8;
+        let of_one = mean_square.saturating_sub(mean * mean);
+        let of_mean = (of_one * share) >> 12;
+        sigma = of_mean * (PARTS_A_STEP * PARTS_A_STEP) as u32;
+        sigma = root(sigma + LEAST_SIGMA * LEAST_SIGMA);
+        if parts.unsigned_abs() <= RECENTRE {
+            break;
+        }
+    }
+    Arrival {
+        ticks: (expected >> 8) as u64,
+        parts: expected as u8,
+        sigma: sigma.min(u32::from(COARSE_SIGMA)) as u16,
+    }
+}
+
+/// Measures the leading edges of a frame whose first bit begins at this place of the ring.
+#[inline(never)]
+fn leading_edges(ring: &ArrivalRing, first_bit: u32, frame: &[u8]) -> Sums {
+    let sums = Sums::default();
+    let &[a, b, c, d, e, f, g, ..] = frame else {
+        return sums;
+    };
+    let at = first_bit.wrapping_add(FIRST_BIT * BIT);
+    let sums = go(ring, at, u32::from_be_bytes([a, b, c, d]), sums);
+    if sums.packed >= MOST_EDGES * AN_EDGE {
+        return sums;
+    }
+    let at = at.wrapping_add(GO_BITS * BIT);
+    go(ring, at, u32::from_be_bytes([d, e, f, g]), sums)
+}
+
+/// The edges of the last 24 of these bits, the first of which begins at this place; the one before them tells whether it continues a pulse.
+#[inline(never)]
+fn go(ring: &ArrivalRing, first: u32, bits: u32, sums: Sums) -> Sums {
+    // The bit before in bit 31, the bit itself in bit 30; a bit behind the last ends the loop.
+    let mut bits = bits << (31 - GO_BITS) | 1 << (30 - GO_BITS);
+    let mut at = first.wrapping_sub(BEFORE);
+    let Sums {
+        mut packed,
+        mut squares,
+    } = sums;
+    while bits << 2 != 0 {
+        // A 1 behind a 0 continues its pulse.
+        let pair = bits >> 30;
+        bits <<= 1;
+        let from = if pair == 0b11 {
+            at
+        } else {
+            at.wrapping_add(HALF_BIT)
+        };
+        at = at.wrapping_add(BIT);
+        if pair == 0b01 {
+            continue;
+        }
+        let Some(window) = ring.eight(from) else {
+            continue;
+        };
+        let lows = u32::from(LOWS[usize::from(window)]);
+        if lows != 0 {
+            let past = from << (32 - FRACTION) >> (32 - OFF_FRACTION);
+            let distance = (lows << OFF_FRACTION) + BIAS - past;
+            packed += distance + AN_EDGE;
+            squares += distance * distance;
+            if packed >= MOST_EDGES * AN_EDGE {
+                break;
+            }
+        }
+    }
+    Sums { packed, squares }
+}
+
+/// The square root, rounded down.
+fn root(square: u32) -> u32 {
+    let mut root = 0;
+    let mut bit = 1 << 15;
+    while bit != 0 {
+        let larger = root | bit;
+        if larger * larger <= square {
+            root = larger;
+        }
+        bit >>= 1;
+    }
+    root
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRAME: [u8; 7] = [0x8D, 0x4D, 0x20, 0x23, 0x99, 0x10, 0x98];
+
+    /// The ring as the second sampler fills it with a frame that begins at this part of a tick.
+    fn sampled(begin: u64) -> ArrivalRing {
+        let ring = ArrivalRing::new();
+        let level = |tick: u64| {
+            // An edge is seen from the tick that follows it.
+            let Some(since) = (tick << 8).checked_sub(begin + (PREAMBLE_TICKS << 8)) else {
+                return false;
+            };
+            let (bit, half) = (since / (120 << 8), since % (120 << 8) / (60 << 8));
+            let byte = FRAME.get(bit as usize / 8).copied();
+            byte.is_some_and(|byte| u64::from(byte >> (7 - bit % 8) & 1) != half)
+        };
+        let first = begin / 256 / 7 / 32;
+        for word in first..first + 64 {
+            let samples = (0..32).fold(0, |samples, sample| {
+                samples << 1 | u32::from(level((word * 32 + sample) * 7))
+            });
+            ring.store(word, samples);
+        }
+        ring
+    }
+
+    #[test]
+    fn the_arrival_is_found_to_a_tick_from_wherever_it_is_expected() {
+        let (mut squares, mut count) = (0, 0);
+        for begin in (0..400u64).map(|n| 5_000_000 * 256 + n * 97) {
+            let ring = sampled(begin);
+            for off in [-14i64, -6, 0, 5, 14] {
+                let coarse = (begin / 256).wrapping_add_signed(off);
+                let found = measure(&ring, &Samples::new(0), coarse, &FRAME);
+                let found_parts = (found.ticks * 256 + u64::from(found.parts)) as i64;
+                let error = found_parts - begin as i64;
+                assert!(error.abs() <= 288, "{begin} from {off}: {error}");
+                assert!(found.sigma < 256, "{found:?}");
+                squares += error * error;
+                count += 1;
+            }
+        }
+        // 3.5 ns rms: the grid of whole ticks gives 2.4.
+        assert!(squares / count < 107 * 107, "{}", squares / count);
+    }
+
+    #[test]
+    fn silence_leaves_what_the_first_sampler_said() {
+        let ring = ArrivalRing::new();
+        let board = Calibration::ADSBEE_1090;
+        let found = measure(&ring, &Samples::new(0), 777, &FRAME).corrected(&board, Some(2000));
+        let coarse = Arrival {
+            ticks: 777,
+            parts: 0,
+            sigma: COARSE_SIGMA,
+        };
+        assert_eq!(found, coarse);
+    }
+
+    #[test]
+    fn a_root_is_rounded_down() {
+        for square in [0, 1, 3, 4, 80, 81, 82, 65_535, 1 << 24, u32::MAX] {
+            let root = u64::from(root(square));
+            assert!(
+                root * root <= u64::from(square) && (root + 1) * (root + 1) > u64::from(square)
+            );
+        }
+    }
+}
