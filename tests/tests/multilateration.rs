@@ -136,7 +136,7 @@ fn errors_m(text: &str, seconds: usize) -> Vec<f64> {
 
 #[test]
 fn four_receivers_with_gps_stamps_place_aircraft_within_25_m() {
-    let errors = errors_m(SITES, 90);
+    let errors = errors_m(SITES, 150);
     let (median, ninety) = (quantile(&errors, 0.5), quantile(&errors, 0.9));
     println!(
         "{} positions, median {median:.1} m, 90 % {ninety:.1} m",

@@ -144,11 +144,15 @@ impl Bus {
             self.run_surroundings();
             self.deadlines.forget();
         }
-        if self.pins.next_change() <= now {
+        let changes = self.pins.next_change() <= now;
+        if changes {
             self.pins.synced(now, 0);
-            for pio in &mut self.pio {
-                pio.unpark_moved(now, &mut self.pins);
-            }
+        }
+        // Asked every time: a state machine that samples in this very cycle has taken the change already.
+        for pio in &mut self.pio {
+            pio.unpark_moved(now, &mut self.pins);
+        }
+        if changes {
             self.resolve_pins();
         }
         if self.deadlines.known && self.deadlines.earliest <= now {
