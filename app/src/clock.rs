@@ -19,8 +19,9 @@ use settings::Settings;
 use timebase::{Name, Quality, State, Timebase};
 
 /// From a frame's leading edge at the antenna to the tick that the demodulator calls its arrival, less what a pulse on GNSS_PPS is late in the same count,
-/// nanoseconds: half a sample of PULSES and the detector's rise. Measured on the board's model at 30 dB (`cargo xtask bench timing`, column `mean`); belongs to the board.
-const ANTENNA_TO_TICK_NS: i32 = 21;
+/// nanoseconds. What half a sample and the detector take is already off by level (`demod`); this is the rest, measured on the board's model at 30 dB
+/// (`cargo test -p tests --test time -- --nocapture`: delay); belongs to the board.
+const ANTENNA_TO_TICK_NS: i32 = 1;
 /// Uncertainty of `now`, ticks: a pulse may carry a stamp a little ahead of the microsecond count. A millisecond.
 const AHEAD: u64 = 120_000;
 /// Bytes of GNSS_UART a turn of the loop.
