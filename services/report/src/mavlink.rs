@@ -23,7 +23,7 @@
 //! | 37 | tslc | s | at most 255 |
 //!
 //! The checksum is X.25's over all but the first byte, and over a byte that stands for the message's definition. Written by hand: three
-//! fixed layouts take fewer bytes of flash than the crate's codec, which the tests use as a second opinion.
+//! fixed layouts take fewer bytes of flash than the crate's codec; the tests have pymavlink read them back.
 //!
 //! Source: the MAVLink guide (serialization, checksum) and `common.xml`; the vectors in this file's tests.
 
