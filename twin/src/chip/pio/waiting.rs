@@ -204,4 +204,48 @@ mod tests {
             assert!(slow.0.len() >= 3, "{:?}", slow.0);
         }
     }
+
+    /// A chip whose state machine 0 samples every 15 cycles while state machine 2 waits; pin 26 rises `after` cycles from the start. What the counter shows.
+    fn stamp_beside_a_sampler(after: u64) -> Option<u32> {
+        const PIO0: u32 = 0x5020_0000;
+        let mut chip = crate::chip::test_chip::chip(&crate::chip::test_chip::FOREVER);
+        let mut write = |offset: u32, value: u32| chip.bus.write32(PIO0 + offset, value);
+        // in pins, 1 at 31, wrapped onto itself, autopush; the counter at 0.
+        write(0x048 + 4 * 31, 0x4001);
+        for (n, word) in PROGRAM.into_iter().enumerate() {
+            write(0x048 + 4 * n as u32, word);
+        }
+        for (offset, value) in [
+            (0x0c8, 15 << 16),
+            (0x0cc, 31 << 12 | 31 << 7),
+            (0x0d0, 1 << 16),
+            (0x0d8, 31),
+        ] {
+            write(offset, value);
+        }
+        let machine_2 = 2 * 0x18;
+        write(machine_2 + 0x0cc, 26 << 24 | 8 << 12 | 7 << 7);
+        write(machine_2 + 0x0d8, 0xa02b);
+        write(machine_2 + 0x0d8, 7);
+        chip.bus.pins.drive(26, false);
+        let start = chip.bus.now;
+        chip.bus.pins.change_at(26, true, start + after);
+        chip.bus.write32(PIO0, 0b101 | 0b101 << 8);
+        crate::chip::test_chip::run(&mut chip, 5_000).expect("it runs");
+        chip.bus.pio[0].sm[2].rx.pop()
+    }
+
+    #[test]
+    fn a_change_that_a_sampler_takes_in_the_same_cycle_is_not_missed() {
+        let first = stamp_beside_a_sampler(1_000).expect("it counted");
+        for later in 1..15 {
+            let word = stamp_beside_a_sampler(1_000 + later);
+            let cycles = word.map(|word| 2 * i64::from(word - first));
+            // One count is two cycles.
+            assert!(
+                cycles.is_some_and(|c| c.abs_diff(later as i64) <= 1),
+                "{later} cycles later: {word:?} after {first}"
+            );
+        }
+    }
 }
