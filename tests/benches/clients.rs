@@ -18,7 +18,9 @@ fn main() -> ExitCode {
         eprintln!("clients: {reason}");
         return ExitCode::FAILURE;
     }
-    live_clients::understand(&folder);
+    for program in live_clients::understand(&folder) {
+        eprintln!("clients: {program} is missing, what it reads is not judged by it");
+    }
     if live_clients::judge(&folder, save.as_deref()) {
         ExitCode::SUCCESS
     } else {

@@ -10,6 +10,7 @@ import sys
 
 from asterix.base import Bits, RawDatablock
 from asterix.generated import Cat_021_2_1, Cat_023_1_2
+from asterix_stream import blocks
 
 EDITIONS = {21: Cat_021_2_1, 23: Cat_023_1_2}
 
@@ -43,21 +44,17 @@ def flatten(name, variation, into):
         raise ValueError(f"{name}: a {kind}")
 
 
-def blocks(data):
-    """The stream's data blocks by their lengths, one at a time: libasterix reads a stream recursively, a block a call."""
-    while data:
-        length = int.from_bytes(data[1:3], "big")
-        if length < 3 or length > len(data):
-            raise ValueError(f"a data block of {length} octets, {len(data)} are left")
-        parsed = RawDatablock.parse(Bits.from_bytes(data[:length]))
+def parsed_blocks(data):
+    """libasterix reads a stream recursively, so it gets a block a call."""
+    for block in blocks(data):
+        parsed = RawDatablock.parse(Bits.from_bytes(block))
         if isinstance(parsed, ValueError):
             raise parsed
         yield from parsed
-        data = data[length:]
 
 
 def records(data):
-    for block in blocks(data):
+    for block in parsed_blocks(data):
         category = block.get_category()
         parsed = EDITIONS[category].cv_uap.parse(block.get_raw_records())
         if isinstance(parsed, ValueError):

@@ -21,6 +21,8 @@ pub enum Client {
     Asterix,
     /// asterix-decoder, a second opinion.
     AsterixDecoder,
+    /// tshark, a third one.
+    Tshark,
     /// jsonschema with `docs/protocols/json.schema.json`.
     Json,
     /// The reference parser of CSBee lines.
@@ -29,6 +31,10 @@ pub enum Client {
     Aero,
     /// The reference parser of GDL90.
     Gdl90,
+    /// The crate gdl90, a second opinion; it is compiled in.
+    Gdl90Crate,
+    /// gpsd, on NMEA that passes through.
+    Gpsd,
     /// dump1090-mutability, Beast input.
     Dump1090Beast,
     /// dump1090-mutability, raw (HEXd) input.
@@ -39,12 +45,34 @@ pub enum Client {
 const SHARED: (&str, &str) = ("clients", "requirements.txt");
 const DECODER: (&str, &str) = ("asterix-decoder", "asterix-decoder.txt");
 
+/// Where Debian keeps daemons, whatever the path says.
+const SYSTEM: &str = "/usr/sbin";
+
 /// Only one test makes an environment at a time.
 static MAKING: Mutex<()> = Mutex::new(());
 
 impl Client {
+    /// The program of the system that it needs and that is not there.
+    pub fn missing(self) -> Option<&'static str> {
+        let program = match self {
+            Client::Tshark => "tshark",
+            Client::Gpsd => "gpsd",
+            Client::Dump1090Beast | Client::Dump1090Raw => "dump1090-mutability",
+            _ => return None,
+        };
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let folders = std::env::split_paths(&path).chain([PathBuf::from(SYSTEM)]);
+        let is_there = folders
+            .into_iter()
+            .any(|folder| folder.join(program).exists());
+        (!is_there).then_some(program)
+    }
+
     /// What it understands of a stream, a value a message.
     pub fn read(self, stream: &[u8]) -> Vec<Value> {
+        if self == Client::Gdl90Crate {
+            return crate::gdl90_crate::read(stream);
+        }
         let mut child = self
             .command()
             .stdin(Stdio::piped())
@@ -66,11 +94,13 @@ impl Client {
     }
 
     /// The command that reads the stream from its standard input.
-    pub fn command(self) -> Command {
+    fn command(self) -> Command {
         let (environment, script, arguments): (_, _, &[&str]) = match self {
             Client::Mavlink => (SHARED, "mavlink_client.py", &[]),
             Client::Asterix => (SHARED, "asterix_client.py", &[]),
             Client::AsterixDecoder => (DECODER, "asterix_decoder_client.py", &[]),
+            Client::Tshark => (SHARED, "tshark_client.py", &[]),
+            Client::Gpsd => (SHARED, "gpsd_client.py", &[]),
             Client::Json => (
                 SHARED,
                 "json_client.py",
@@ -78,7 +108,8 @@ impl Client {
             ),
             Client::Csbee => (SHARED, "csv_client.py", &["csbee"]),
             Client::Aero => (SHARED, "csv_client.py", &["aero"]),
-            Client::Gdl90 => (SHARED, "gdl90_client.py", &[]),
+            // The crate has no script: the reference parser is beside it.
+            Client::Gdl90 | Client::Gdl90Crate => (SHARED, "gdl90_client.py", &[]),
             Client::Dump1090Beast => (SHARED, "dump1090_client.py", &["beast"]),
             Client::Dump1090Raw => (SHARED, "dump1090_client.py", &["raw"]),
         };

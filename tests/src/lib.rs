@@ -4,6 +4,7 @@ pub mod beast;
 pub mod boot_timing;
 pub mod clients;
 pub mod cpu_peer;
+pub mod gdl90_crate;
 pub mod image_peer;
 pub mod live_clients;
 pub mod logs;

@@ -1,5 +1,5 @@
 //! Real clients on live ports (`cargo xtask bench clients`): real traffic in the shipped image, frames on CONSOLE as Beast, one protocol after the other on COMMS_UART at
-//! 3 Mbaud; and the truth beside it, a tracker of its own fed with the same frames at the same times.
+//! 3 Mbaud; before that the GNSS receiver's NMEA on CONSOLE; and the truth beside it, a tracker of its own fed with the same frames at the same times.
 //!
 //! | file in `target/clients` | holds |
 //! |---|---|
@@ -7,6 +7,8 @@
 //! | `frames.txt` | each frame of it as received: milliseconds, hexadecimal digits |
 //! | `<protocol>.bin` | what COMMS_UART sent in this protocol |
 //! | `<protocol>.times` | `<bytes so far> <ms>`: a line whenever bytes had come |
+//! | `nmea.bin`, `nmea.times` | what CONSOLE sent before traffic began: the GNSS receiver's sentences among CSBEE's lines |
+//! | `scene.json` | place of the GNSS receiver, and Unix milliseconds at millisecond 0 |
 //! | `truth.jsonl` | an aircraft's values from `ms` on, a line whenever they change |
 //! | `stats.txt` | `AT+STATS?` at the end |
 //! | `<client>.jsonl` | what a client understood of its protocol, a line a message |
@@ -19,11 +21,12 @@ use crate::beast::Reader;
 use crate::clients::Client;
 use mode_s::{Frame, Message};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::Path;
 use tracker::{Aircraft, Field, Heard, Tracker};
-use twin::board::Board;
+use twin::board::{Board, Playback, Setup, gnss};
+use twin::chip::flash::Flash;
 use twin::completed::Completed;
 use twin::front_end::{FrontEnd, Player};
 use twin::source::{Air, AirOptions, MessageLog};
@@ -39,18 +42,23 @@ const STAMP_AFTER_ARRIVAL: u64 = 768;
 const CYCLES_A_MS: u64 = 120_000;
 /// What an unfinished burst may take after its protocol's time, ms.
 const TAIL_MS: u64 = 60;
+/// Time for NMEA: two seconds' sentences, ms.
+const NMEA_MS: u64 = 2_200;
 /// Frames so near to a second's end that the device may count them on either side of it, ms.
 const SLACK_MS: u64 = 40;
 
 /// Each client, the part it reads, and its name.
-const CLIENTS: [(Client, &str, &str); 10] = [
+const CLIENTS: [(Client, &str, &str); 13] = [
     (Client::Csbee, "csbee", "csbee"),
     (Client::Aero, "csv", "aero"),
     (Client::Mavlink, "mavlink1", "pymavlink-1"),
     (Client::Mavlink, "mavlink2", "pymavlink-2"),
     (Client::Gdl90, "gdl90", "gdl90"),
+    (Client::Gdl90Crate, "gdl90", "gdl90-crate"),
     (Client::Asterix, "asterix", "libasterix"),
     (Client::AsterixDecoder, "asterix", "asterix-decoder"),
+    (Client::Tshark, "asterix", "tshark"),
+    (Client::Gpsd, "nmea", "gpsd"),
     (Client::Json, "json", "jsonschema"),
     (Client::Dump1090Raw, "hexd", "dump1090-raw"),
     (Client::Dump1090Beast, "console", "dump1090-beast"),
@@ -65,6 +73,24 @@ struct Part {
     times: String,
 }
 
+impl Part {
+    fn new(name: &'static str) -> Self {
+        Part {
+            name,
+            bytes: Vec::new(),
+            times: String::new(),
+        }
+    }
+
+    fn take(&mut self, said: Vec<u8>, at_ms: u64) {
+        if !said.is_empty() {
+            self.bytes.extend(said);
+            // Writing to a string does not fail.
+            let _ = writeln!(self.times, "{} {at_ms}", self.bytes.len());
+        }
+    }
+}
+
 /// A frame of CONSOLE.
 struct HeardFrame {
     at_ms: u64,
@@ -75,9 +101,10 @@ struct HeardFrame {
 
 /// Plays a message of the log every `spacing_us` for `part_ms` a protocol and writes all files into `folder`.
 pub fn record(folder: &Path, part_ms: u64, spacing_us: u64) -> Result<(), Failure> {
-    let mut board = Board::power_on(&crate::image())?;
-    board.wait_for_capture()?;
-    board.wait_for_console()?;
+    let gnss = gnss::Options::default();
+    let mut board = board(&gnss)?;
+    let first_sample = board.chip.bus.pio[0].enabled_at[0] + 1;
+    let nmea = nmea(&mut board, first_sample)?;
     for line in [
         "AT+PROTOCOL=COMMS_UART,NONE",
         "AT+BAUDRATE=COMMS_UART,3000000",
@@ -88,7 +115,6 @@ pub fn record(folder: &Path, part_ms: u64, spacing_us: u64) -> Result<(), Failur
         board.console_write(format!("{line}\r\n").as_bytes());
         board.run_ms(30)?;
     }
-    let first_sample = board.chip.bus.pio[0].enabled_at[0] + 1;
     board.console_read();
     board.comms_read();
     let log = crate::logs::folder_of("adsb_deku").join("tests/lax-messages.txt");
@@ -100,26 +126,18 @@ pub fn record(folder: &Path, part_ms: u64, spacing_us: u64) -> Result<(), Failur
     };
     let messages = MessageLog::open(&log, spacing_us * 1_000_000)?;
     let player = Player::new(Air::new(messages, options), &FrontEnd::ADSBEE_1090);
-    board.play(Box::new(player))?;
+    let playback = board.play(Box::new(player))?;
 
     let mut console = Vec::new();
-    let mut parts = Vec::new();
+    let mut parts = vec![nmea];
     for name in PROTOCOLS {
-        let mut part = Part {
-            name,
-            bytes: Vec::new(),
-            times: String::new(),
-        };
+        let mut part = Part::new(name);
         let mut run = |board: &mut Board, ms: u64, part: &mut Part| -> Result<(), Failure> {
             for _ in 0..ms {
                 board.run_ms(1)?;
                 console.extend(board.console_read());
                 let said = board.comms_read();
-                if !said.is_empty() {
-                    part.bytes.extend(said);
-                    let ms = (board.chip.now() - first_sample) / CYCLES_A_MS;
-                    writeln!(part.times, "{} {ms}", part.bytes.len())?;
-                }
+                part.take(said, (board.chip.now() - first_sample) / CYCLES_A_MS);
             }
             Ok(())
         };
@@ -141,6 +159,10 @@ pub fn record(folder: &Path, part_ms: u64, spacing_us: u64) -> Result<(), Failur
     std::fs::create_dir_all(folder)?;
     std::fs::write(folder.join("console.bin"), &console)?;
     std::fs::write(folder.join("stats.txt"), stats)?;
+    std::fs::write(
+        folder.join("scene.json"),
+        scene(&gnss, &playback).to_string(),
+    )?;
     for part in &parts {
         let name = part.name.to_lowercase();
         std::fs::write(folder.join(format!("{name}.bin")), &part.bytes)?;
@@ -156,9 +178,61 @@ pub fn record(folder: &Path, part_ms: u64, spacing_us: u64) -> Result<(), Failur
     Ok(())
 }
 
-/// Lets every client read its part.
-pub fn understand(folder: &Path) {
+/// A board with a GNSS receiver, in RUN.
+fn board(gnss: &gnss::Options) -> Result<Board, Failure> {
+    let mut flash = Flash::new(2 << 20, *b"SQUITTER");
+    twin::image::flash_uf2(&crate::image(), &mut flash)?;
+    let setup = Setup {
+        gnss: Some(gnss.clone()),
+        ..Setup::default()
+    };
+    let mut board = Board::new(flash, &setup);
+    board.wait_for_capture()?;
+    board.wait_for_console()?;
+    Ok(board)
+}
+
+/// NMEA on CONSOLE, among lines of CSBEE.
+fn nmea(board: &mut Board, first_sample: u64) -> Result<Part, Failure> {
+    for line in ["AT+PROTOCOL=CONSOLE,CSBEE", "AT+GNSS_LOG=2"] {
+        board.console_write(format!("{line}\r\n").as_bytes());
+        board.run_ms(30)?;
+    }
+    let mut part = Part::new("nmea");
+    for _ in 0..NMEA_MS {
+        board.run_ms(1)?;
+        part.take(
+            board.console_read(),
+            (board.chip.now() - first_sample) / CYCLES_A_MS,
+        );
+    }
+    board.console_write(b"AT+GNSS_LOG=0\r\n");
+    board.run_ms(30)?;
+    Ok(part)
+}
+
+/// Where the GNSS receiver is, and what time it was at the device's millisecond 0.
+fn scene(gnss: &gnss::Options, playback: &Playback) -> Value {
+    let start_ms = (playback.start_true_ps as f64 - gnss.first_second_ps as f64) / 1e9;
+    let start_unix_ms = gnss.calendar.start_unix_s as f64 * 1e3 + start_ms;
+    json!({
+        "unix_ms": start_unix_ms - playback.start_tick as f64 / CYCLES_A_MS as f64,
+        "lat_e7": gnss.place.latitude,
+        "lon_e7": gnss.place.longitude,
+        "height_cm": gnss.place.height_cm,
+        "geoid_cm": gnss.place.geoid_cm,
+    })
+}
+
+/// Lets every client read its part. Gives the programs that are missing; what their clients understood before is forgotten.
+pub fn understand(folder: &Path) -> BTreeSet<&'static str> {
+    let mut missing = BTreeSet::new();
     for (client, part, name) in CLIENTS {
+        if let Some(program) = client.missing() {
+            missing.insert(program);
+            let _ = std::fs::remove_file(folder.join(format!("{name}.jsonl")));
+            continue;
+        }
         let stream = std::fs::read(folder.join(format!("{part}.bin"))).expect("the recording");
         let lines: String = client
             .read(&stream)
@@ -167,6 +241,7 @@ pub fn understand(folder: &Path) {
             .collect();
         std::fs::write(folder.join(format!("{name}.jsonl")), lines).expect("a folder for it");
     }
+    missing
 }
 
 /// Compares; says whether all agreed. `save`: where to keep the table.

@@ -12,6 +12,7 @@ const SPACING_US: u64 = 4_000;
 fn every_client_understands_all_that_the_image_sends() {
     let folder = tests::root().join("target/clients-short");
     live_clients::record(&folder, PART_MS, SPACING_US).expect("the chip runs");
-    live_clients::understand(&folder);
+    let missing = live_clients::understand(&folder);
+    assert!(missing.is_empty(), "to be installed: {missing:?}");
     assert!(live_clients::judge(&folder, None), "see the table above");
 }
