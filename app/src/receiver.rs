@@ -171,11 +171,15 @@ impl Receiver {
                 (Some(level), Some(floor)) => Some(level.saturating_sub(floor).max(0)),
                 _ => None,
             };
+            // To the nearest tick.
+            let arrival = raw_frame.arrival + u64::from(raw_frame.arrival_parts >> 7);
+            let times = self.clock.times(arrival);
             let heard = Heard {
                 at_ms: raw_frame.arrival / TICKS_PER_MS,
                 level_cdbm: raw_frame.level,
                 quality_cdb,
                 is_repaired: raw_frame.repaired() != 0,
+                since_pps_ns: times.since_pps_ns,
             };
             self.tracker.on_frame(&raw_frame.frame, &message, heard);
             let received = raw_frame.received();
@@ -183,10 +187,7 @@ impl Receiver {
                 bits: Bits::ModeS(&received),
                 level_cdbm: raw_frame.level,
                 quality_cdb,
-                // To the nearest tick.
-                times: self
-                    .clock
-                    .times(raw_frame.arrival + u64::from(raw_frame.arrival_parts >> 7)),
+                times,
             };
             let context = context!(self, now);
             self.console.frame(&report, true, &context);

@@ -267,6 +267,9 @@ def judge_receiver(folder, scene):
                 row.messages += 1
                 compare(row, f"{client} CAT023", {"070": Near(now, TIME_S, DAY_S), "100/TSV": 0}, message)
     for message, now in at("json", lines, "jsonschema"):
+        if "adsb" in message:
+            # The pulse has been there for long.
+            compare(row, "JSON adsb", {"has a stamp": True}, {"has a stamp": "ts24h" in message["adsb"][0]})
         if "gnss" in message:
             row.messages += 1
             wanted = {"ts": Near(now * 1000, TIME_S * 1000, DAY_S * 1000)}

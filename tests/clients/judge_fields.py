@@ -287,6 +287,11 @@ def json_aircraft(message, v):
     told = {name: one.get(name) for name in wanted}
     if "ts" in message:
         wanted["ts"], told["ts"] = Near(v["second_of_day"], TIME_S, DAY_S), message["ts"] / 1000
+    if "ts24h" in one:
+        # The last frame's, to the nanosecond; the truth knows it to four milliseconds.
+        wanted["ts24h"] = Near(v["values_second_of_day"] - v["silent_ms"] / 1000, AGE_S, DAY_S)
+        told["ts24h"] = one["ts24h"] / 1e9
+        wanted["ts1s"], told["ts1s"] = one["ts24h"] % 10**9, one["ts1s"]
     told["call"] = text(told["call"])
     return wanted, told
 

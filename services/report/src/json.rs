@@ -12,7 +12,7 @@
 //! ```
 //! A field that is not known is left out, `ts` too. NACp, NACv, NICbaro, NIC and GVA are left out where they are 0, which is unknown. Two
 //! profiles of the `adsb` names, never both in one message: the OEM TT-SG1a's (`altBaro`, track 0-360) and the OEM TT-SF1's (`baroAlt`, track
-//! -180 to 180). The tracker keeps no stamp of nanoseconds, so aircraft have no `ts1s` and `ts24h`; raw frames have.
+//! -180 to 180).
 //!
 //! Source: the OEM TT-SG1a document, 6.6, 7.2 and 8.2.2; the OEM TT-SF1 document, 6.7.
 

@@ -14,12 +14,13 @@
 //! | nav_qnh, nav_altitude_mcp, nav_altitude_fms, nav_modes, nav_heading | | hPa, ft, degrees |
 //! | call, ecat, squawk | ident, ecat, squawk | |
 //! | nacp, nacv, nicBaro, nic, gva | nacp, nacv, nicBaro, nic | |
+//! | ts1s, ts24h | | of the last frame, nanoseconds since the last PPS and since UTC midnight |
 
 use crate::Full;
 use crate::ecat;
 use crate::json::{Profile, message};
 use crate::json_object::Object;
-use crate::moment::Moment;
+use crate::moment::{Moment, second_of_day};
 use crate::text::whole_decibels;
 use mode_s::CentiDegrees;
 use tracker::{Aircraft, Field};
@@ -37,7 +38,7 @@ pub fn aircraft(
         text.byte(b'[')?;
         let mut entry = Object::open(text)?;
         match profile {
-            Profile::Sg1a => sg1a(&mut entry, aircraft, moment.now_ms)?,
+            Profile::Sg1a => sg1a(&mut entry, aircraft, moment)?,
             Profile::Sf1 => sf1(&mut entry, aircraft, moment.now_ms)?,
         }
         entry.close()?;
@@ -45,7 +46,8 @@ pub fn aircraft(
     })
 }
 
-fn sg1a(entry: &mut Object<'_, '_>, aircraft: &Aircraft, now_ms: u64) -> Result<(), Full> {
+fn sg1a(entry: &mut Object<'_, '_>, aircraft: &Aircraft, moment: &Moment) -> Result<(), Full> {
+    let now_ms = moment.now_ms;
     address(entry, aircraft)?;
     flags(entry, aircraft)?;
     signal(entry, aircraft)?;
@@ -58,7 +60,8 @@ fn sg1a(entry: &mut Object<'_, '_>, aircraft: &Aircraft, now_ms: u64) -> Result<
     identity(entry, aircraft, "call")?;
     quality(entry, aircraft, now_ms)?;
     let gva = aircraft.status(now_ms).map(|status| status.gva());
-    entry.maybe("gva", gva.filter(|&gva| gva != 0))
+    entry.maybe("gva", gva.filter(|&gva| gva != 0))?;
+    stamps(entry, aircraft, moment)
 }
 
 fn sf1(entry: &mut Object<'_, '_>, aircraft: &Aircraft, now_ms: u64) -> Result<(), Full> {
@@ -71,6 +74,26 @@ fn sf1(entry: &mut Object<'_, '_>, aircraft: &Aircraft, now_ms: u64) -> Result<(
     identity(entry, aircraft, "ident")?;
     quality(entry, aircraft, now_ms)?;
     entry.maybe("surf", aircraft.on_ground().filter(|&ground| ground))
+}
+
+/// The last frame's, as far as they are known.
+fn stamps(entry: &mut Object<'_, '_>, aircraft: &Aircraft, moment: &Moment) -> Result<(), Full> {
+    const NS_DIGITS: usize = 9;
+    let Some(ns) = aircraft.heard_after_pps_ns() else {
+        return Ok(());
+    };
+    entry.key("ts1s")?.digits(ns, 1)?;
+    if let Some(utc_ms) = moment.utc_ms_before(aircraft.silent_ms(moment.now_ms)) {
+        let text = entry.key("ts24h")?;
+        match second_of_day(utc_ms, ns) {
+            0 => text.digits(ns, 1)?,
+            second => {
+                text.digits(second, 1)?;
+                text.digits(ns, NS_DIGITS)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Hundredths of a degree from -18 000 to 18 000.

@@ -138,3 +138,30 @@ fn the_profiles_names_do_not_mix() {
     assert!(sg1a.contains("\"track\":182.88,"), "{sg1a}");
     assert!(sf1.contains("\"track\":-177.12,"), "{sf1}");
 }
+
+#[test]
+fn an_aircrafts_stamps_are_its_last_frames() {
+    use crate::test_aircraft::hear;
+    let told = |since_pps_ns, moment: Moment| {
+        let mut tracker = tracker::Tracker::<4>::new();
+        let heard = tracker::Heard {
+            since_pps_ns,
+            ..tracker::Heard::at(800)
+        };
+        hear(&mut tracker, &frame("5D4B18FFFC710B"), heard);
+        tracker.each_second(1000);
+        let aircraft = *tracker.aircraft().next().unwrap();
+        sent(|out| super::aircraft("1", &aircraft, &moment, Profile::Sg1a, out))
+    };
+    // 200 ms ago, on the far side of a second's end.
+    let at = |utc_ms| Moment {
+        now_ms: 1000,
+        utc_ms: Some(utc_ms),
+    };
+    let ns = Some(988_350_583);
+    assert!(told(ns, at(69_061_188)).contains(",\"ts1s\":988350583,\"ts24h\":69060988350583}"));
+    assert!(told(ns, at(1_188)).contains(",\"ts1s\":988350583,\"ts24h\":988350583}"));
+    assert!(told(Some(5), at(2_200)).contains(",\"ts1s\":5,\"ts24h\":2000000005}"));
+    assert!(told(ns, Moment::at(1000)).contains(",\"ts1s\":988350583}"));
+    assert!(!told(None, at(69_061_188)).contains("ts1s"));
+}

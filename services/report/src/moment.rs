@@ -28,9 +28,28 @@ impl Moment {
     }
 }
 
+/// The UTC second of the day in which something happened at about `utc_ms` and exactly `since_pps_ns` after the second's start: the nearest such second. The former may be
+/// half a second off.
+pub(crate) fn second_of_day(utc_ms: u32, since_pps_ns: u32) -> u32 {
+    const HALF_MS: u32 = 500;
+    let start_ms = utc_ms + DAY_MS - since_pps_ns / 1_000_000;
+    (start_ms + HALF_MS) / 1_000 % (DAY_MS / 1_000)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_nearest_second_across_its_end_and_midnight() {
+        let ns = |ms: u32| ms * 1_000_000;
+        assert_eq!(second_of_day(47_655_123, ns(123)), 47_655);
+        // The milliseconds already name the next second, or still the one before.
+        assert_eq!(second_of_day(47_656_003, ns(999)), 47_655);
+        assert_eq!(second_of_day(47_654_997, ns(2)), 47_655);
+        assert_eq!(second_of_day(2, ns(999)), 86_399);
+        assert_eq!(second_of_day(DAY_MS - 1, ns(1)), 0);
+    }
 
     #[test]
     fn times_before_reach_back_across_midnight() {

@@ -235,6 +235,102 @@ fn updated_ones_alone_spread_over_the_second() {
     }
 }
 
+/// Two pairs of positions of 4CA7E8, so that the second one is shown.
+const PLACE: [[u8; 7]; 2] = [
+    [0x58, 0x59, 0xF1, 0x8C, 0xDF, 0x4D, 0x24],
+    [0x58, 0x5B, 0x05, 0x53, 0x3E, 0x2B, 0xA7],
+];
+
+fn squitter(address: u32, me: [u8; 7]) -> Frame {
+    let mut bytes = [0x8D; 14];
+    bytes[1..4].copy_from_slice(&address.to_be_bytes()[1..]);
+    bytes[4..11].copy_from_slice(&me);
+    let parity = mode_s::crc24::remainder(&bytes[..11]).to_be_bytes();
+    bytes[11..].copy_from_slice(&parity[1..]);
+    Frame::from_bytes(&bytes).unwrap()
+}
+
+#[test]
+fn a_changed_position_goes_out_at_once_and_nothing_else_does() {
+    let mut sky = Sky::new(Decoded::Csbee, Reporting::Position, 16_384);
+    let turn = |sky: &mut Sky| {
+        let context = context(sky.now_ms);
+        while sky.reporter.turn(&mut sky.tracker, &context) {}
+        sky.reporter.port.outlet.drain(FAST);
+        sky.told()
+    };
+    let mut told = Vec::new();
+    for n in 0..6 {
+        sky.now_ms += 300;
+        // Those without a position are never told.
+        sky.hear(n + 1);
+        let frame = squitter(0x4C_A7E8, PLACE[n as usize % 2]);
+        let heard = Heard::at(sky.now_ms);
+        sky.tracker
+            .on_frame(&frame, &Message::decode(&frame), heard);
+        told.push(turn(&mut sky));
+        assert!(turn(&mut sky).is_empty());
+    }
+    // Both formats must have agreed twice before a place is shown; from then on each frame moves it.
+    let moved = std::vec![0x4C_A7E8];
+    assert_eq!(told[..3].concat(), [], "{told:?}");
+    assert!(told[3..].iter().all(|told| *told == moved), "{told:?}");
+    // The same place again is no change.
+    let frame = squitter(0x4C_A7E8, PLACE[1]);
+    sky.tracker.on_frame(
+        &frame,
+        &Message::decode(&frame),
+        Heard::at(sky.now_ms + 100),
+    );
+    assert!(turn(&mut sky).is_empty());
+    // A second's end tells none either.
+    assert!(sky.second(FAST).concat().is_empty());
+}
+
+#[test]
+fn the_settings_altitude_order_reaches_mavlink_and_gdl90() {
+    use settings::choices::AltitudeOrder;
+    for decoded in [Decoded::Mavlink1, Decoded::Mavlink2, Decoded::Gdl90] {
+        let orders = [
+            AltitudeOrder::BarometricFirst,
+            AltitudeOrder::GeometricFirst,
+            AltitudeOrder::BarometricFirst,
+        ];
+        let said = orders.map(|order| {
+            let mut sky = Sky::new(decoded, Reporting::EverySecond, 16_384);
+            sky.settings.altitude_order = order;
+            let settings = sky.settings;
+            sky.reporter.apply(&settings);
+            for n in 0..4 {
+                sky.now_ms += 300;
+                let mut messages = std::vec![PLACE[n % 2]];
+                // Type code 19: the geometric altitude is 500 ft above the barometric one.
+                messages.push([0x99, 0x44, 0x09, 0x94, 0x08, 0x38, 0x15]);
+                for me in messages {
+                    let frame = squitter(0x4C_A7E8, me);
+                    let heard = Heard::at(sky.now_ms);
+                    sky.tracker
+                        .on_frame(&frame, &Message::decode(&frame), heard);
+                }
+            }
+            let aircraft = *sky.tracker.aircraft().next().unwrap();
+            let now_ms = sky.now_ms;
+            assert_ne!(
+                aircraft.baro_altitude(now_ms),
+                aircraft.gnss_altitude(now_ms)
+            );
+            let context = context(now_ms);
+            sky.tracker.each_second(now_ms);
+            let statistics = Statistics::default();
+            sky.reporter.second(&mut sky.tracker, &context, &statistics);
+            while sky.reporter.turn(&mut sky.tracker, &context) {}
+            core::mem::take(&mut sky.reporter.port.outlet.waiting)
+        });
+        assert_ne!(said[0], said[1], "{decoded:?}");
+        assert_eq!(said[0], said[2], "{decoded:?}");
+    }
+}
+
 #[test]
 fn a_stopped_port_says_nothing() {
     let mut sky = Sky::new(Decoded::Csbee, Reporting::EverySecond, 16_384);

@@ -39,6 +39,8 @@ pub struct Aircraft {
     /// Packed: see `packed`.
     pub(crate) packed_address: u32,
     pub(crate) heard_at: Stamp,
+    /// Nanoseconds from the last PPS to the same frame, and one more: 0 is unknown.
+    pub(crate) heard_after_pps: u32,
     pub(crate) freshness: Freshness,
     pub(crate) places: Places,
     pub(crate) signal: Signal,
@@ -98,6 +100,7 @@ impl Aircraft {
     pub(crate) const BLANK: Aircraft = Aircraft {
         packed_address: 0,
         heard_at: Stamp::NEVER,
+        heard_after_pps: 0,
         freshness: Freshness::NONE,
         places: Places::NONE,
         signal: Signal::NONE,

@@ -5,8 +5,6 @@
 pub struct Counts {
     /// Mode S frames of any format (SFPS, FPSS).
     pub mode_s: u16,
-    /// Extended squitters among them: DF17, 18 and 19.
-    pub squitters: u16,
     /// Mode A/C replies that this aircraft alone can have sent (ACFPS, FPSAC).
     pub mode_ac: u16,
 }
@@ -15,12 +13,10 @@ impl Counts {
     /// None.
     pub(crate) const ZERO: Counts = Counts {
         mode_s: 0,
-        squitters: 0,
         mode_ac: 0,
     };
 
-    pub(crate) fn hear_mode_s(&mut self, is_squitter: bool) {
+    pub(crate) fn hear_mode_s(&mut self) {
         self.mode_s = self.mode_s.saturating_add(1);
-        self.squitters = self.squitters.saturating_add(is_squitter.into());
     }
 }

@@ -63,9 +63,9 @@ impl Aircraft {
         let Hearing { message, heard, .. } = hearing;
         let at_ms = heard.at_ms;
         self.heard_at = Stamp::at(at_ms);
+        self.heard_after_pps = heard.since_pps_ns.map_or(0, |ns| ns + 1);
         self.signal.hear(heard);
-        let is_squitter = matches!(message.df.number(), 17..=19);
-        self.counts_now.hear_mode_s(is_squitter);
+        self.counts_now.hear_mode_s();
         if is_proof(message, heard) {
             self.flags.set(Flag::Confirmed, true);
         }

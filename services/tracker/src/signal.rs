@@ -13,6 +13,8 @@ pub struct Heard {
     pub quality_cdb: Option<i16>,
     /// The demodulator has repaired bits of it: such a frame is trusted less than its parity says.
     pub is_repaired: bool,
+    /// Nanoseconds since the last PPS, below 1 000 000 000, where that is known.
+    pub since_pps_ns: Option<u32>,
 }
 
 impl Heard {
@@ -23,6 +25,7 @@ impl Heard {
             level_cdbm: None,
             quality_cdb: None,
             is_repaired: false,
+            since_pps_ns: None,
         }
     }
 }

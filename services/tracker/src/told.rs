@@ -38,6 +38,11 @@ impl Aircraft {
         self.heard_at.age_ms(now_ms).unwrap_or(0)
     }
 
+    /// Nanoseconds from the last PPS to the last frame.
+    pub fn heard_after_pps_ns(&self) -> Option<u32> {
+        self.heard_after_pps.checked_sub(1)
+    }
+
     /// Milliseconds since a field was told, while it is known. What has no life of its own is at most 200 s old here.
     pub fn age_ms(&self, field: Field, now_ms: u64) -> Option<u32> {
         self.freshness.age_ms(field, now_ms)

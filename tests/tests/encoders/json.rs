@@ -116,6 +116,20 @@ fn entry(
     fields.as_object().expect("an object").clone()
 }
 
+/// The nearest instant to that of the last frame by the millisecond that has these nanoseconds.
+fn ts24h(Sample { aircraft, moment }: &Sample, ns: u32) -> Option<u64> {
+    let day_ms = i64::from(report::DAY_MS);
+    let silent_ms = i64::from(aircraft.silent_ms(moment.now_ms));
+    let about_ms = (i64::from(moment.utc_ms?) - silent_ms).rem_euclid(day_ms);
+    let candidates = (0..86_400).map(|second| second * 1_000 + i64::from(ns / 1_000_000));
+    let apart = |at: i64| {
+        let apart = (at - about_ms).abs();
+        apart.min(day_ms - apart)
+    };
+    let at_ms = candidates.min_by_key(|&at| apart(at))?;
+    Some((at_ms / 1_000) as u64 * 1_000_000_000 + u64::from(ns))
+}
+
 fn sg1a(sample: &Sample) -> Value {
     let Sample { aircraft, moment } = sample;
     let now_ms = moment.now_ms;
@@ -158,6 +172,8 @@ fn sg1a(sample: &Sample) -> Value {
         "nav_modes": modes,
         "nav_heading": aircraft.selected_heading(now_ms).map(|heading| hundredths(heading.0.into())),
         "gva": nonzero(status.map_or(0, |status| status.gva())),
+        "ts1s": aircraft.heard_after_pps_ns(),
+        "ts24h": aircraft.heard_after_pps_ns().and_then(|ns| ts24h(sample, ns)),
     });
     fields.extend(more.as_object().expect("an object").clone());
     known(fields.into())

@@ -62,17 +62,23 @@ fn reception(number: u64, at_ms: u64) -> Heard {
     Heard {
         level_cdbm: known.then_some(level),
         quality_cdb: known.then_some(level + 10_000),
+        // Its nanoseconds are made up.
+        since_pps_ns: known.then(|| of_day_ms(at_ms) as u32 % 1_000 * 1_000_000 + spread as u32),
         ..Heard::at(at_ms)
     }
 }
 
 /// The time of day is not known at first.
 fn moment(now_ms: u64) -> Moment {
-    let day_ms = (u64::from(DAY_MS) - BEFORE_MIDNIGHT_MS + now_ms) % u64::from(DAY_MS);
     Moment {
         now_ms,
-        utc_ms: (now_ms > 20_000).then_some(day_ms as u32),
+        utc_ms: (now_ms > 20_000).then_some(of_day_ms(now_ms) as u32),
     }
+}
+
+/// Milliseconds since midnight.
+fn of_day_ms(at_ms: u64) -> u64 {
+    (u64::from(DAY_MS) - BEFORE_MIDNIGHT_MS + at_ms) % u64::from(DAY_MS)
 }
 
 /// What a GNSS says in places all over the world, with and without a fix, and before the first.
