@@ -16,11 +16,12 @@
 
 use crate::Full;
 use crate::crc16::end_with_comma;
+use crate::csv_fields;
 use crate::ecat;
 use crate::moment::Moment;
 use crate::statistics::Statistics;
 use crate::sysinfo::sysinfo;
-use crate::text::{Text, whole_decibels, whole_knots};
+use crate::text::Text;
 use tracker::{Aircraft, Field};
 
 /// A slice that holds any aircraft or statistics line.
@@ -59,33 +60,13 @@ const UPDATES: [Field; 6] = [
 pub fn aircraft(aircraft: &Aircraft, moment: &Moment, out: &mut [u8]) -> Result<usize, Full> {
     let now_ms = moment.now_ms;
     let mut line = Text::new(out);
-    line.bytes(b"#A:")?;
-    line.hex(aircraft.address().bits(), 6)?;
-    line.byte(b',')?;
-    line.hex(flags(aircraft, now_ms), 1)?;
-    line.byte(b',')?;
-    if let Some(callsign) = aircraft.callsign() {
-        line.bytes(callsign.as_bytes())?;
-    }
-    line.byte(b',')?;
-    if let Some(squawk) = aircraft.squawk() {
-        line.octal4(squawk)?;
-    }
+    csv_fields::start(&mut line, aircraft, flags(aircraft, now_ms))?;
     let category = aircraft.category().map(ecat::csbee);
     line.decimal_field(category.map(i32::from))?;
-    let position = aircraft.position(now_ms);
-    line.degrees_field(position.map(|place| place.latitude))?;
-    line.degrees_field(position.map(|place| place.longitude))?;
+    csv_fields::place(&mut line, aircraft, now_ms)?;
     line.decimal_field(aircraft.baro_altitude(now_ms).map(|a| a.0))?;
     line.decimal_field(aircraft.gnss_altitude(now_ms).map(|a| a.0))?;
-    let track = aircraft.track(now_ms).map(|t| t.whole_degrees());
-    line.decimal_field(track.map(i32::from))?;
-    let speed = aircraft.ground_speed_eighths(now_ms);
-    line.decimal_field(speed.map(whole_knots))?;
-    let rate = aircraft.vertical_rate(now_ms);
-    line.decimal_field(rate.map(|rate| i32::from(rate.feet_per_minute)))?;
-    line.decimal_field(aircraft.level_cdbm().map(whole_decibels))?;
-    line.decimal_field(aircraft.quality_cdb().map(whole_decibels))?;
+    csv_fields::motion_and_signal(&mut line, aircraft, now_ms)?;
     let counts = aircraft.counts_last_second();
     line.decimal_field(Some(i32::from(counts.mode_ac)))?;
     line.decimal_field(Some(i32::from(counts.mode_s)))?;

@@ -25,6 +25,7 @@ mod asterix_record;
 pub mod beast;
 mod crc16;
 pub mod csbee;
+mod csv_fields;
 pub mod ecat;
 mod emergency;
 mod frame_report;
