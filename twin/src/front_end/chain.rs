@@ -59,7 +59,8 @@ impl Chain {
     /// Stage after stage over the whole block: each is then a short loop that the host runs fast.
     pub fn feed(&mut self, dbm: &mut [f32], edges: &mut Vec<Edge>) {
         if self.settled(dbm) {
-            self.history.stands(&self.detector, self.now_ps, dbm.len());
+            let mv = self.detector.state();
+            self.history.stands(mv, self.now_ps, dbm.len());
             self.now_ps += self.step_ps * dbm.len() as u64;
             return;
         }
@@ -69,8 +70,8 @@ impl Chain {
             .copied()
             .filter(|first| dbm.iter().all(|dbm| dbm == first));
         dbm.iter_mut().for_each(|level| *level = millivolt(*level));
-        self.history.note(&self.detector, self.now_ps, dbm);
-        self.threshold.compare(&mut self.detector, dbm);
+        let detector_mv = self.history.begin(self.now_ps, dbm.len());
+        self.threshold.compare(&mut self.detector, dbm, detector_mv);
         let changed = edges.len();
         for part in dbm.chunks(64) {
             self.switch(part, edges);

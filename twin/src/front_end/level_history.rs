@@ -1,9 +1,7 @@
 //! What the detector put out lately, for the RSSI input of the ADC.
 //!
-//! The front end runs ahead of the chip, in blocks. Kept of each are the detector's state at its start and what the detector was aiming
-//! at; a question about an instant runs the detector over that block again, which costs nothing until someone asks.
+//! The front end runs ahead of the chip, in blocks. Kept of each are the detector's outputs.
 
-use super::detector::Detector;
 use std::collections::VecDeque;
 
 /// How long a level is remembered behind the newest, ps: the chip lags 100 µs of look-ahead and a block behind it, the native engine 128 µs and a block.
@@ -12,9 +10,8 @@ const REMEMBERED_PS: u64 = 400_000_000;
 struct Block {
     start_ps: u64,
     end_ps: u64,
-    detector: Detector,
-    /// Empty where the detector stood still.
-    aims_mv: Vec<f32>,
+    /// The detector's output at each sample, mV; one alone where it stood still.
+    mv: Vec<f32>,
 }
 
 /// The last blocks, the oldest first.
@@ -34,46 +31,45 @@ impl LevelHistory {
         }
     }
 
-    /// A block begins at `start_ps` with the detector so, and it will aim at these outputs one after the other.
-    pub(super) fn note(&mut self, detector: &Detector, start_ps: u64, aims_mv: &[f32]) {
-        let end_ps = start_ps + self.step_ps * aims_mv.len() as u64;
-        let mut aims = self.forget(start_ps);
-        aims.extend_from_slice(aims_mv);
-        self.begin(detector, start_ps, end_ps, aims);
+    /// A block of so many samples begins at `start_ps`: where to put the detector's output at each, mV.
+    pub(super) fn begin(&mut self, start_ps: u64, samples: usize) -> &mut [f32] {
+        let mut mv = self.forget(start_ps);
+        mv.resize(samples, 0.0);
+        self.blocks.push_back(Block {
+            start_ps,
+            end_ps: start_ps + self.step_ps * samples as u64,
+            mv,
+        });
+        self.blocks
+            .back_mut()
+            .map_or(&mut [], |block| &mut block.mv)
     }
 
-    /// The block of so many samples that begins at `start_ps` moves nothing.
-    pub(super) fn stands(&mut self, detector: &Detector, start_ps: u64, samples: usize) {
+    /// The block of so many samples that begins at `start_ps` moves nothing: the output stays `mv`.
+    pub(super) fn stands(&mut self, mv: f32, start_ps: u64, samples: usize) {
         let end_ps = start_ps + self.step_ps * samples as u64;
         let last = self.blocks.back_mut();
-        match last.filter(|b| b.aims_mv.is_empty() && b.end_ps == start_ps) {
+        match last.filter(|b| b.mv == [mv] && b.end_ps == start_ps) {
             Some(still) => still.end_ps = end_ps,
             None => {
-                let aims = self.forget(start_ps);
-                self.begin(detector, start_ps, end_ps, aims);
+                self.begin(start_ps, 1)[0] = mv;
+                if let Some(block) = self.blocks.back_mut() {
+                    block.end_ps = end_ps;
+                }
             }
         }
     }
 
-    fn begin(&mut self, detector: &Detector, start_ps: u64, end_ps: u64, aims_mv: Vec<f32>) {
-        self.blocks.push_back(Block {
-            start_ps,
-            end_ps,
-            detector: detector.clone(),
-            aims_mv,
-        });
-    }
-
     /// Drops what is long past at `now_ps`; gives an empty list, with the memory of a dropped one where there is one.
     fn forget(&mut self, now_ps: u64) -> Vec<f32> {
-        let mut aims = Vec::new();
+        let mut mv = Vec::new();
         let long_past = |b: &mut Block| b.end_ps + REMEMBERED_PS < now_ps;
         while let Some(block) = self.blocks.pop_front_if(long_past) {
             self.forgotten_ps = block.end_ps;
-            aims = block.aims_mv;
+            mv = block.mv;
         }
-        aims.clear();
-        aims
+        mv.clear();
+        mv
     }
 
     /// The output at an instant, mV; `None` where it was not produced yet, or at the end of all.
@@ -88,12 +84,8 @@ impl LevelHistory {
         );
         let after = self.blocks.partition_point(|b| b.end_ps <= at_ps);
         let block = self.blocks.get(after)?;
-        let mut detector = block.detector.clone();
-        let steps = ((at_ps - block.start_ps) / self.step_ps) as usize;
-        for aim in block.aims_mv.iter().take(steps + 1) {
-            detector.step(*aim);
-        }
-        Some(detector.state())
+        let sample = ((at_ps - block.start_ps) / self.step_ps) as usize;
+        block.mv.get(sample).or(block.mv.last()).copied()
     }
 }
 

@@ -42,22 +42,25 @@ impl Threshold {
         (self.average_mv, self.peak_mv)
     }
 
-    /// Replaces what the detector aims at by how far its output is above the threshold, sample by sample.
+    /// Replaces what the detector aims at by how far its output is above the threshold, sample by sample, and puts that output into `levels`, as long.
     ///
     /// Detector and slicer in one loop, because the host's processor then works on both at once.
-    pub fn compare(&mut self, detector: &mut Detector, mv: &mut [f32]) {
+    pub fn compare(&mut self, detector: &mut Detector, mv: &mut [f32], levels: &mut [f32]) {
         // A copy of its own stays in registers.
         let mut follower = detector.clone();
+        let samples = mv.iter_mut().zip(levels);
         match self.slicer {
             Slicer::Fixed => {
-                for sample in mv {
-                    *sample = follower.step(*sample) - self.trigger_mv;
+                for (sample, level) in samples {
+                    *level = follower.step(*sample);
+                    *sample = *level - self.trigger_mv;
                 }
             }
             Slicer::RcFollowing => {
                 let mut average = self.average_mv;
-                for sample in mv {
+                for (sample, kept) in samples {
                     let level = follower.step(*sample);
+                    *kept = level;
                     average = average * (1.0 - self.rc) + level * self.rc;
                     *sample = level - average - self.above_average_mv;
                 }
@@ -66,8 +69,9 @@ impl Threshold {
             Slicer::PeakFollowing => {
                 let under = UNDER_PEAK_DB * MILLIVOLT_PER_DB;
                 let mut peak = self.peak_mv;
-                for sample in mv {
+                for (sample, kept) in samples {
                     let level = follower.step(*sample);
+                    *kept = level;
                     let decayed = peak - self.decay_mv;
                     peak = if level > decayed { level } else { decayed };
                     *sample = level - self.trigger_mv.max(peak - under);
@@ -89,7 +93,9 @@ mod tests {
         let mut threshold = Threshold::new(&front_end, 1000.0);
         let mut above = levels.to_vec();
         // A microsecond a step: the detector has followed.
-        threshold.compare(&mut Detector::new(&front_end, 1000.0), &mut above);
+        let mut detector = Detector::new(&front_end, 1000.0);
+        let mut outputs = vec![0.0; above.len()];
+        threshold.compare(&mut detector, &mut above, &mut outputs);
         levels[levels.len() - 1] - above[above.len() - 1]
     }
 

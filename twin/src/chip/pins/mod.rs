@@ -288,6 +288,17 @@ impl Pins {
         self.seen
     }
 
+    /// The first cycle behind `now` at which a reader may see other levels than [`Pins::synced`] has just given, as far as nothing but what comes from outside
+    /// changes them.
+    #[inline]
+    pub fn unchanged_until(&self, now: u64, bypass: u32) -> u64 {
+        if bypass != 0 || now < self.settled_at {
+            now + 1
+        } else {
+            self.next_visible
+        }
+    }
+
     /// Whether readers see the same level of `pin` from cycle `from` on until something outside changes it at a cycle that [`Pins::next_change`] names, or a
     /// register or a peripheral does.
     pub fn steady(&self, pin: u32, from: u64, bypass: u32) -> bool {

@@ -128,9 +128,8 @@ impl Pio {
         }
         while self.soonest <= limit {
             let awake = self.enabled & !self.parked;
-            let alone = awake.is_power_of_two() && self.sm.iter().all(|sm| sm.exec.is_none());
-            if alone {
-                self.sample(awake.trailing_zeros() as usize, limit, pins);
+            if self.sm.iter().all(|sm| sm.exec.is_none()) && self.sticky & awake == 0 {
+                self.sample(awake, limit, pins);
                 if self.soonest > limit {
                     break;
                 }

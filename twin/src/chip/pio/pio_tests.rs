@@ -29,7 +29,7 @@ impl PulseSource for Comb {
     fn set_trigger_level_mv(&mut self, _: f64) {}
 }
 
-/// A sampler like the firmware's; `spoiled` has a second instruction in its loop's place, so that the shortcut does not apply.
+/// A sampler like the firmware's; where it is not wanted, something keeps the shortcut away.
 fn sampler(shortcut: bool, shiftctrl: u32) -> (Pio, Pins) {
     let (mut pio, mut pins) = (Pio::new(), Pins::new());
     pins.play(
@@ -81,6 +81,46 @@ fn the_sampling_shortcut_gives_the_words_of_the_full_model_at_the_same_cycles() 
         assert!(fast.len() > 2_000, "{}", fast.len());
         assert!(fast.iter().any(|w| w.1 != 0 && w.1 != u32::MAX));
         assert_eq!(fast, full, "SHIFTCTRL {shiftctrl:#x}");
+    }
+}
+
+/// The words of the two samplers of the firmware's block, at 8 and 120/7 Msps, run `step` cycles at a time: cycle, state machine, word.
+fn two_samplers(shortcut: bool, step: u64) -> Vec<(u64, usize, u32)> {
+    let (mut pio, mut pins) = sampler(true, LEFT_32);
+    let second = 0x18;
+    for (offset, value) in [
+        (0x0c8, 7 << 16),
+        (0x0cc, 0),
+        (0x0d0, LEFT_32),
+        (0x0dc, PIN << 15),
+    ] {
+        pio.write(second + offset, value, 0, &mut pins);
+    }
+    // A third state machine that only waits, now and then, keeps the shortcut away.
+    pio.write(0x04c, 0x0001, 0, &mut pins);
+    pio.write(2 * second + 0x0c8, 0xffff_0000, 0, &mut pins);
+    pio.write(2 * second + 0x0d8, 0x0001, 0, &mut pins);
+    pio.write(0x000, if shortcut { 0b011 } else { 0b111 }, 0, &mut pins);
+    let mut words = Vec::new();
+    let mut now = 0;
+    while now < 1_000_000 {
+        now = pio.run((now + step).min(1_000_000), &mut pins).max(now + 1);
+        for n in 0..2 {
+            while !pio.observe(n).rx.is_empty() {
+                words.push((now, n, pio.read(0x020 + 4 * n as u32).expect("RXF")));
+            }
+        }
+    }
+    words
+}
+
+#[test]
+fn two_samplers_at_once_give_the_words_of_the_full_model_at_the_same_cycles() {
+    let full = two_samplers(false, 1);
+    for step in [1, 13, 100, 5_000] {
+        let fast = two_samplers(true, step);
+        assert!(fast.iter().filter(|w| w.1 == 1).count() > 4_000);
+        assert_eq!(fast, full, "{step} cycles at a time");
     }
 }
 
