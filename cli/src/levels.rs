@@ -4,15 +4,34 @@
 
 use std::collections::VecDeque;
 
-use crate::beast::Received;
 use crate::output::Form;
+use mode_s::Frame;
+use twin::beast_stream::Received;
+
+/// A Mode S message of the device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// 48-bit count at 12 MHz of the end of the first 56 bits.
+    pub stamp: u64,
+    pub frame: Frame,
+}
+
+impl Message {
+    /// `None` of a Mode A/C reply.
+    fn of(received: &Received) -> Option<Self> {
+        Some(Message {
+            stamp: received.stamp,
+            frame: Frame::from_bytes(&received.bytes).ok()?,
+        })
+    }
+}
 
 /// Joins both.
 #[derive(Default)]
 pub struct Levels {
     line: String,
     lines: VecDeque<(String, Option<i32>)>,
-    messages: VecDeque<Received>,
+    messages: VecDeque<Message>,
 }
 
 impl Levels {
@@ -29,12 +48,13 @@ impl Levels {
     }
 
     /// Takes Beast messages.
-    pub fn beast(&mut self, messages: impl IntoIterator<Item = Received>) {
-        self.messages.extend(messages);
+    pub fn beast(&mut self, messages: &[Received]) {
+        self.messages
+            .extend(messages.iter().filter_map(Message::of));
     }
 
     /// The next frame and its level, when both ports have told it. A line that was dropped leaves its frame without a level.
-    pub fn next(&mut self) -> Option<(Received, Option<i32>)> {
+    pub fn next(&mut self) -> Option<(Message, Option<i32>)> {
         let message = *self.messages.front()?;
         let hex: String = message
             .frame
@@ -53,7 +73,7 @@ impl Levels {
     }
 
     /// The same; a form without levels does not wait for them.
-    pub fn next_of(&mut self, form: Form) -> Option<(Received, Option<i32>)> {
+    pub fn next_of(&mut self, form: Form) -> Option<(Message, Option<i32>)> {
         match form {
             Form::Hex => self.next(),
             _ => self.messages.pop_front().map(|message| (message, None)),
@@ -61,7 +81,7 @@ impl Levels {
     }
 
     /// What is left at the end, without a level.
-    pub fn rest(&mut self) -> impl Iterator<Item = Received> + '_ {
+    pub fn rest(&mut self) -> impl Iterator<Item = Message> + '_ {
         self.messages.drain(..)
     }
 }
@@ -76,18 +96,25 @@ fn parse(line: &str) -> Option<(String, Option<i32>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mode_s::Frame;
 
     #[test]
     fn each_frame_waits_for_its_line() {
         let frame = |first: u8| Frame::from_bytes(&[first, 0, 0, 0, 0, 0, 0]).expect("short");
-        let message = |first| Received {
+        let message = |first| Message {
             stamp: 0,
-            level: 1,
             frame: frame(first),
         };
+        let received = |first| Received {
+            stamp: 0,
+            level: 1,
+            bytes: frame(first).bytes().to_vec(),
+        };
         let mut levels = Levels::default();
-        levels.beast([message(0x28), message(0x20), message(0x5D)]);
+        let reply = Received {
+            bytes: vec![0x12, 0x34],
+            ..received(0)
+        };
+        levels.beast(&[received(0x28), reply, received(0x20), received(0x5D)]);
         assert_eq!(levels.next(), None);
         levels.console(b"*28000000000000;(-71,9,,)\r\n*2000");
         assert_eq!(levels.next(), Some((message(0x28), Some(-71))));

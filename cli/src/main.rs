@@ -3,7 +3,6 @@
 //! Exit codes: 0 done; 1 something went wrong, told on standard error; 2 the command line is wrong; `update` has more of its own.
 #![forbid(unsafe_code)]
 
-mod beast;
 mod decode;
 mod device;
 mod factory;

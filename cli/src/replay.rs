@@ -4,14 +4,14 @@ use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, Command};
+use twin::beast_stream::Reader;
 use twin::completed::Completed;
 use twin::front_end::PulseSource;
 use twin::native;
 use twin::source::PRE_ROLL_PS;
 
-use crate::beast;
 use crate::instruments::{self, Instruments};
-use crate::levels::Levels;
+use crate::levels::{Levels, Message};
 use crate::output::{self, Form, Heard, Printer};
 use crate::{Failure, device, radio};
 
@@ -132,7 +132,7 @@ fn by_twin(
     let profiling = device::profile(&mut board, matches);
     let mut instruments = Instruments::begin(&mut board, matches)?;
     let start = output::start_count(playback.start_tick, PRE_ROLL_PS);
-    let mut reader = beast::Reader::default();
+    let mut reader = Reader::default();
     let mut completed = Completed::default();
     let mut levels = Levels::default();
     let mut left = TAIL_MS;
@@ -153,7 +153,7 @@ fn by_twin(
             Form::Beast => printer.bytes(&comms)?,
             Form::Hex | Form::Json => {
                 levels.console(&said);
-                levels.beast(reader.read(&comms));
+                levels.beast(&reader.read(&comms));
                 while let Some((message, level)) = levels.next_of(form) {
                     printer.frame(&heard(&mut completed, &message, level, start))?;
                 }
@@ -185,7 +185,7 @@ fn by_twin(
 /// A Beast message of the device as the receiver believed it; `start` is the count at which the recording began.
 fn heard(
     completed: &mut Completed,
-    message: &beast::Received,
+    message: &Message,
     level_dbm: Option<i32>,
     start: i64,
 ) -> Heard {

@@ -8,8 +8,8 @@
 
 use std::io::Error;
 use tests::Bench;
-use tests::beast::Reader;
 use tests::reception::device::counter;
+use twin::beast_stream::Reader;
 use twin::board::Board;
 use twin::front_end::{FrontEnd, Player};
 use twin::source::{Air, AirOptions, MessageLog};

@@ -1,6 +1,5 @@
 //! What end-to-end tests and benchmarks share: where the images and the recordings are, and how a bench reports.
 
-pub mod beast;
 pub mod boot_timing;
 pub mod clients;
 pub mod cpu_peer;

@@ -17,7 +17,6 @@
 //!
 //! All milliseconds are of the device's uptime: since its first sample.
 
-use crate::beast::Reader;
 use crate::clients::Client;
 use mode_s::{Frame, Message};
 use serde_json::{Value, json};
@@ -25,6 +24,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::Path;
 use tracker::{Aircraft, Field, Heard, Tracker};
+use twin::beast_stream::Reader;
 use twin::board::{Board, Playback, Setup, gnss};
 use twin::chip::flash::Flash;
 use twin::completed::Completed;

@@ -1,8 +1,8 @@
 //! Positions from a fleet's Beast streams alone: what arrived where and when, solved by least squares, against where the aircraft were.
 
 use std::collections::HashMap;
-use tests::beast::Reader;
 use tests::reception::arrival::quantile;
+use twin::beast_stream::Reader;
 use twin::fleet::earth::{LIGHT_M_S, Place, distance_m, from_degrees};
 use twin::fleet::site::{self, Site};
 use twin::fleet::{Fleet, Options, Sent};

@@ -57,7 +57,7 @@ fn three_megabaud_lose_nothing_in_either_direction() {
     assert_eq!(grown("COMMS_UART", "received_lost"), 0, "{after}");
     assert_eq!(grown("COMMS_UART", "received"), sent, "{after}");
     assert_eq!(grown("COMMS_UART", "dropped"), 0, "{after}");
-    let mut reader = tests::beast::Reader::default();
+    let mut reader = twin::beast_stream::Reader::default();
     let frames = reader.read(&said);
     assert_eq!(reader.skipped, 0);
     assert_eq!(frames.len() as u64, grown("QUEUE", "offered"), "{after}");

@@ -92,7 +92,7 @@ fn configuration_speaks_at_its_rate_receives_nothing_and_blinks_slowly() {
     board.comms_read();
     air(&mut board);
     board.run_ms(300).expect("the chip runs");
-    let mut reader = tests::beast::Reader::default();
+    let mut reader = twin::beast_stream::Reader::default();
     let frames = reader.read(&board.comms_read());
     assert!(frames.len() > 100, "{}", frames.len());
     assert_eq!(reader.skipped, 0);

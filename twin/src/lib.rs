@@ -7,6 +7,7 @@
 //! Deterministic: the same input gives the same bytes at the same cycles, whatever the host does meanwhile.
 #![forbid(unsafe_code)]
 
+pub mod beast_stream;
 pub mod board;
 pub mod chip;
 pub mod completed;

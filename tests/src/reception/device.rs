@@ -2,8 +2,8 @@
 //! completed here.
 
 use super::Decoded;
-use crate::beast::Reader;
 use mode_s::Frame;
+use twin::beast_stream::Reader;
 use twin::board::{Board, Playback};
 use twin::completed::Completed;
 use twin::front_end::PulseSource;

@@ -88,4 +88,11 @@ mod tests {
             assert_eq!(got[0].bytes, [0x00, 0xA1, 0x84, 0x1A, 0xC3, 0xB3, 0x1D]);
         }
     }
+
+    #[test]
+    fn text_between_messages_is_counted_not_taken() {
+        let mut reader = Reader::default();
+        assert!(reader.read(b"OK\r\n").is_empty());
+        assert_eq!(reader.skipped, 4);
+    }
 }
