@@ -27,6 +27,9 @@ const LIFE: usize = 8;
 /// Where the last crash is kept, and its words: count, end, life, place and caller, file.
 const CRASH_AT: usize = 32;
 const CRASH: usize = 3 + LIFE + 2 + 8;
+/// Kinds of end beside those of [`End`], as they are kept.
+const STOPPED: u32 = 3;
+const UNKNOWN: u32 = 4;
 const _: () = assert!(LIFE_AT + LIFE < kept::LAST_WORDS_AT);
 const _: () = assert!(CRASH_AT >= LAST_WORDS_END && CRASH_AT + CRASH < kept::WORDS);
 
@@ -94,16 +97,8 @@ impl Life {
 /// How an image ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Reason {
-    Panic {
-        core: u32,
-        line: u32,
-    },
-    HardFault {
-        core: u32,
-        pc: u32,
-        caller: u32,
-    },
-    GaveUp,
+    /// As it could still say.
+    Said(LastWords),
     Stopped {
         core: u32,
     },
@@ -118,7 +113,6 @@ pub struct Crash {
     pub count: u32,
     reason: Reason,
     life: Life,
-    file: [u8; 32],
 }
 
 impl Crash {
@@ -141,24 +135,22 @@ impl Crash {
             count: before.map_or(0, |crash| crash.count).saturating_add(1),
             reason: reason(cause, words, &life),
             life,
-            file: words.map_or([0; 32], |words| words.file),
         };
         kept::put(CRASH_AT, &crash.words());
         Some(crash)
     }
 
     fn words(&self) -> [u32; CRASH] {
-        let (kind, core, place, caller) = match self.reason {
-            Reason::Panic { core, line } => (0, core, line, 0),
-            Reason::HardFault { core, pc, caller } => (1, core, pc, caller),
-            Reason::GaveUp => (2, 0, 0, 0),
-            Reason::Stopped { core } => (3, core, 0, 0),
-            Reason::Unknown => (4, 0, 0, 0),
+        let nothing = LastWords::new(End::GaveUp);
+        let (kind, core, said) = match self.reason {
+            Reason::Said(said) => (said.end as u32, said.core, said),
+            Reason::Stopped { core } => (STOPPED, core, nothing),
+            Reason::Unknown => (UNKNOWN, 0, nothing),
         };
         let mut words = [0; CRASH];
-        words[..5].copy_from_slice(&[self.count, kind, core, place, caller]);
+        words[..5].copy_from_slice(&[self.count, kind, core, said.place, said.caller]);
         words[5..5 + LIFE].copy_from_slice(&self.life.words());
-        for (word, bytes) in words[5 + LIFE..].iter_mut().zip(self.file.chunks_exact(4)) {
+        for (word, bytes) in words[5 + LIFE..].iter_mut().zip(said.file.chunks_exact(4)) {
             *word = u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
         }
         words
@@ -175,18 +167,17 @@ impl Crash {
         Self {
             count,
             reason: match kind {
-                0 => Reason::Panic { core, line: place },
-                1 => Reason::HardFault {
+                STOPPED => Reason::Stopped { core },
+                UNKNOWN => Reason::Unknown,
+                end => Reason::Said(LastWords {
+                    end: End::from_word(end),
                     core,
-                    pc: place,
+                    place,
                     caller,
-                },
-                2 => Reason::GaveUp,
-                3 => Reason::Stopped { core },
-                _ => Reason::Unknown,
+                    file,
+                }),
             },
             life: Life::from_words(life),
-            file,
         }
     }
 }
@@ -205,18 +196,7 @@ const NO_LIFE: Life = Life {
 
 fn reason(cause: Option<Cause>, words: Option<LastWords>, life: &Life) -> Reason {
     match (words, cause) {
-        (Some(words), _) => match words.end {
-            End::Panic => Reason::Panic {
-                core: words.core,
-                line: words.place,
-            },
-            End::HardFault => Reason::HardFault {
-                core: words.core,
-                pc: words.place,
-                caller: words.caller,
-            },
-            End::GaveUp => Reason::GaveUp,
-        },
+        (Some(words), _) => Reason::Said(words),
         (None, Some(Cause::Watchdog)) => Reason::Stopped {
             core: u32::from(life.stalled_ms >= STALLED_MS),
         },
@@ -238,18 +218,7 @@ impl fmt::Display for Crash {
             tracked,
         } = self.life;
         match self.reason {
-            Reason::Panic { core, line } => {
-                let name = self.file.split(|byte| *byte == 0).next_back();
-                let name = core::str::from_utf8(name.unwrap_or_default()).unwrap_or("?");
-                write!(f, "panic on core {core} at {name}:{line}")?;
-            }
-            Reason::HardFault { core, pc, caller } => {
-                write!(
-                    f,
-                    "hard fault on core {core} at {pc:#010x}, called from {caller:#010x}"
-                )?;
-            }
-            Reason::GaveUp => f.write_str("could not confirm itself")?,
+            Reason::Said(said) => said.fmt(f)?,
             Reason::Stopped { core } => write!(f, "watchdog: core {core} stopped")?,
             Reason::Unknown => f.write_str("reset from outside")?,
         }

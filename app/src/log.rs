@@ -2,7 +2,7 @@
 //!
 //! | level | said |
 //! |---|---|
-//! | ERRORS | stored settings that could not be read |
+//! | ERRORS | the crash that led to this start; stored settings that could not be read |
 //! | WARNINGS | stored values that were no good; frames lost between the cores |
 //! | INFO | settings stored; the image confirmed; messages for which a port had no room |
 //!
@@ -11,6 +11,7 @@
 use crate::console::Reply;
 use crate::receiver::Receiver;
 use crate::store::Trouble;
+use boot_contract::hand_over::Cause;
 use core::fmt;
 use core::sync::atomic::Ordering;
 use settings::Port;
@@ -43,6 +44,12 @@ impl Receiver {
 
     /// What the start found, told to a host that has just opened CONSOLE.
     pub fn log_start(&mut self) {
+        // One that was followed by a start on command has been told before.
+        if let Some(crash) = self.crash
+            && self.start != Some(Cause::Command)
+        {
+            self.log(LogLevel::Errors, format_args!("crash: {crash}"));
+        }
         match self.settings_trouble {
             // Said by the start itself.
             None | Some(Trouble::Missing) => {}

@@ -4,6 +4,7 @@ use boot_core::session::{Machine, Port, Session};
 use embedded_hal::digital::{InputPin, OutputPin};
 use hal::board::{BootConfig, Led};
 use hal::flash::Flash;
+use hal::kept::LastWords;
 use hal::uart::CommsUart;
 use hal::usb::UsbConsole;
 use hal::watchdog::Watchdog;
@@ -118,6 +119,7 @@ impl Board {
 
 impl Machine for Board {
     type Flash = Flash;
+    type Words = LastWords;
 
     fn flash(&mut self) -> &mut Flash {
         &mut self.flash
@@ -133,5 +135,10 @@ impl Machine for Board {
             Port::Console => self.console.send(bytes),
             Port::CommsUart => self.comms.send(bytes),
         };
+    }
+
+    fn last_words(&self) -> Option<LastWords> {
+        // Left where they are: the firmware takes them at its start.
+        LastWords::read()
     }
 }

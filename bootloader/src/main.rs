@@ -10,7 +10,8 @@
 //!                              ▼
 //!                       AT+ERROR (<reason>) on both ports, once a second
 //! ```
-//! The decisions are `boot-core`'s; this file carries them out. The way to the jump touches no peripheral but the scratch words.
+//! The decisions are `boot-core`'s; this file carries them out. The way to the jump touches no peripheral but the scratch words and
+//! what the watchdog resets.
 //!
 //! boot2 is that of the W25Q080 family, which a Pico and the boards carry: quad reads without an instruction (EBh, continuous), divider 4. A line of the
 //! XIP cache takes 120 cycles; the generic one (03h) takes 392, and core 0 waits for nothing else so long. A board with a flash of another maker
@@ -50,6 +51,8 @@ fn main() -> ! {
     let (cause, locked) = match boot_core::start(watchdog::hand_over_words(), source) {
         Start::Jump(cause, slot) => {
             watchdog::set_hand_over_words(HandOver::Report(cause).words());
+            // The session's count runs on: it must find something to reset, should the firmware hang before it starts its own.
+            watchdog::select_chip();
             // SAFETY: the request is written only after the slot was verified, just before the reset that led here; nothing
             // has been touched since.
             unsafe { boot::jump(XIP_BASE + slot.slot().image) }
@@ -84,7 +87,7 @@ fn session(parts: Parts, cause: Cause, locked: bool) -> Option<Outcome> {
         keys: Keys(&KEYS),
         floor: 0,
     };
-    let mut session = Session::new(terms, log, cause == Cause::PowerOn, locked);
+    let mut session = Session::new(terms, log, cause, locked);
     loop {
         board.serve(&mut session);
         let held = board.is_held();

@@ -23,6 +23,7 @@ mod scene;
 mod serial;
 mod snapshots;
 mod update;
+mod usbip;
 
 use std::process::ExitCode;
 
@@ -84,6 +85,7 @@ fn command() -> Command {
         .subcommand(scene::command())
         .subcommand(fleet::command())
         .subcommand(update::command())
+        .subcommand(usbip::command())
         .subcommand(keys::keygen())
         .subcommand(keys::pack())
         .subcommand(keys::sign())
@@ -100,6 +102,7 @@ fn main() -> ExitCode {
         Some(("scene", m)) => scene::run(m),
         Some(("fleet", m)) => fleet::run(m),
         Some(("update", m)) => update::run(m),
+        Some(("usbip", m)) => usbip::run(m),
         Some(("keygen", m)) => keys::run_keygen(m),
         Some(("pack", m)) => keys::run_pack(m),
         Some(("sign", m)) => keys::run_sign(m),

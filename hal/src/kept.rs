@@ -7,6 +7,7 @@
 //! uses when it starts (the top of SRAM; RP2040 datasheet, 2.8.1). Writers are core 0, and whoever panics or faults, who comes last.
 
 use core::cell::UnsafeCell;
+use core::fmt;
 use rp2040_hal::pac;
 
 /// Words in all.
@@ -94,6 +95,17 @@ pub enum End {
     GaveUp,
 }
 
+impl End {
+    /// The one that was kept as this number; any other is the last.
+    pub fn from_word(word: u32) -> Self {
+        match word {
+            0 => End::Panic,
+            1 => End::HardFault,
+            _ => End::GaveUp,
+        }
+    }
+}
+
 impl LastWords {
     /// The words of a program that ends by itself, or panics without a place.
     pub fn new(end: End) -> Self {
@@ -123,22 +135,50 @@ impl LastWords {
 
     /// The ones of the program that ran before, forgotten hereby.
     pub fn take() -> Option<Self> {
-        let words = get::<LAST_WORDS>(LAST_WORDS_AT)?;
+        let words = Self::read()?;
         clear(LAST_WORDS_AT, LAST_WORDS);
+        Some(words)
+    }
+
+    /// The ones of the program that ran before.
+    pub fn read() -> Option<Self> {
+        let words = get::<LAST_WORDS>(LAST_WORDS_AT)?;
         let mut file = [0; 32];
         for (bytes, word) in file.chunks_exact_mut(4).zip(&words[4..]) {
             bytes.copy_from_slice(&word.to_le_bytes());
         }
         Some(Self {
-            end: match words[0] {
-                0 => End::Panic,
-                1 => End::HardFault,
-                _ => End::GaveUp,
-            },
+            end: End::from_word(words[0]),
             core: words[1],
             place: words[2],
             caller: words[3],
             file,
         })
+    }
+}
+
+impl fmt::Display for LastWords {
+    /// `panic on core 0 at app/src/x.rs:12`
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            core,
+            place,
+            caller,
+            ..
+        } = self;
+        match self.end {
+            End::Panic => {
+                let name = self.file.split(|byte| *byte == 0).next_back();
+                let name = core::str::from_utf8(name.unwrap_or_default()).unwrap_or("?");
+                write!(f, "panic on core {core} at {name}:{place}")
+            }
+            End::HardFault => {
+                write!(
+                    f,
+                    "hard fault on core {core} at {place:#010x}, called from {caller:#010x}"
+                )
+            }
+            End::GaveUp => f.write_str("could not confirm itself"),
+        }
     }
 }

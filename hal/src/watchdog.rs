@@ -88,17 +88,23 @@ pub fn reset(words: [u32; 2]) -> ! {
     reset_counting(words)
 }
 
-/// As [`reset`], but a running count goes on: what starts now has what is left of it to start its own.
-pub fn reset_counting(words: [u32; 2]) -> ! {
-    cortex_m::interrupt::disable();
-    set_hand_over_words(words);
-    // SAFETY: selects everything but the oscillators for the watchdog's reset; nothing else writes WDSEL, and we do not return.
+/// Selects the whole chip but its oscillators for the watchdog's reset. Nothing is selected after a reset: a count that runs out before this, or before
+/// [`Watchdog::start`], resets nothing.
+pub fn select_chip() {
+    // SAFETY: any value may be written; whoever writes WDSEL in our images writes this.
     unsafe {
         (*pac::PSM::ptr()).wdsel().write_with_zero(|w| {
             w.bits(0x0001_FFFF);
             w.rosc().clear_bit().xosc().clear_bit()
         });
     }
+}
+
+/// As [`reset`], but a running count goes on: what starts now has what is left of it to start its own.
+pub fn reset_counting(words: [u32; 2]) -> ! {
+    cortex_m::interrupt::disable();
+    set_hand_over_words(words);
+    select_chip();
     loop {
         registers().ctrl().modify(|_, w| w.trigger().set_bit());
     }

@@ -19,6 +19,11 @@ fn ask(board: &mut Board, line: &str) -> String {
     String::from_utf8(board.console_read()).expect("the console speaks text")
 }
 
+/// What the console has said so far.
+fn said(board: &mut Board) -> String {
+    String::from_utf8(board.console_read()).expect("the console speaks text")
+}
+
 /// The answer to `AT+INFO`, without what it says of crashes, and that.
 fn info(board: &mut Board) -> (Vec<String>, String) {
     ask(board, "AT+PROTOCOL=CONSOLE,NONE");
@@ -73,6 +78,11 @@ fn a_core_that_hangs_is_named_with_the_time_and_the_counters_of_its_end() {
         board.run_ms(2_000).expect("the chip runs");
         board.carry_out(Fault::Hang { core }).expect("it hangs");
         restarted(&mut board, 4);
+        // The start itself says so, as LOG_LEVEL's factory value wants.
+        let log = said(&mut board);
+        let line =
+            format!("[ERRORS] crash: watchdog: core {core} stopped; firmware 0.1.0.0 after ");
+        assert!(log.contains(&line), "{log}");
         let (device, crash) = info(&mut board);
         assert!(
             device.contains(&"Started by: watchdog".into()),
@@ -106,6 +116,12 @@ fn a_crash_is_remembered_over_a_reboot_counted_and_forgotten_with_the_power() {
     restarted(&mut board, 4);
     ask(&mut board, "AT+REBOOT");
     restarted(&mut board, 1);
+    // Remembered, but not the reason of this start: the log does not tell it again.
+    let log = said(&mut board);
+    assert!(
+        log.contains("AT+RUN_START") && !log.contains("crash:"),
+        "{log}"
+    );
     let (device, crash) = info(&mut board);
     assert!(device.contains(&"Started by: command".into()), "{device:?}");
     assert!(crash.starts_with("watchdog: core 0 stopped"), "{crash}");
@@ -148,12 +164,24 @@ fn a_panic_tells_file_and_line() {
     board
         .carry_out(Fault::Stray { core: 0, address })
         .expect("it strays");
-    restarted(&mut board, 1);
+    let tail = &file[file.len().saturating_sub(32)..];
+    let what = format!("panic on core 0 at {tail}:{line}");
+    // The bootloader tells it too: a device that cannot start any firmware has nobody else.
+    board.run_ms(500).expect("the chip runs");
+    board.comms_write(b"AT+INFO\r\n");
+    board.run_ms(700).expect("the chip runs");
+    let told = String::from_utf8_lossy(&board.comms_read()).into_owned();
+    let lines = format!("Started by: panic\r\nLast words: {what}\r\nSecurity counter: 0\r\n");
+    assert!(told.contains(&lines), "{lines} / {told}");
+    let captures = |board: &mut Board| board.chip.bus.pio[0].enabled_at[0] != 0;
+    assert!(board.run_until(6, captures).expect("the chip runs"));
+    board.wait_for_console().expect("the console opens");
     let (device, crash) = info(&mut board);
     assert!(device.contains(&"Started by: panic".into()), "{device:?}");
-    let tail = &file[file.len().saturating_sub(32)..];
-    let what = format!("panic on core 0 at {tail}:{line}; firmware 0.1.0.0 after 0.");
-    assert!(crash.starts_with(&what), "{what} / {crash}");
+    assert!(
+        crash.starts_with(&format!("{what}; firmware 0.1.0.0 after 0.")),
+        "{what} / {crash}"
+    );
 }
 
 /// A `core::panic::Location` in slot A: its address, file and line.

@@ -1,6 +1,7 @@
 //! Power cuts on the host: through updates, by the bootloader's own code over a flash that tears; through saves of settings, by the firmware's store over
-//! an EEPROM and a flash that tear.
+//! an EEPROM and a flash that tear. In the twin: the shipped images.
 
+use tests::power_cuts::in_twin::{Part, Script as Images};
 use tests::power_cuts::settings::{self, Found, keeper::Keeper, memory::Kind};
 use tests::power_cuts::{Outcome, Script, log_lengths};
 
@@ -46,5 +47,21 @@ fn no_cut_of_a_save_loses_or_mixes_settings() {
         assert_eq!(all.second_cuts, all.cuts);
         assert!(all.cuts >= LEAST_CUTS / 2, "{} cuts", all.cuts);
         assert!(all.new > 0 && all.new < all.cuts / 10, "{} new", all.new);
+    }
+}
+
+/// The shipped images in the twin, a few cuts of each part; the long form is `cargo xtask bench power-cuts --update`.
+#[test]
+fn no_cut_or_watchdog_reset_bricks_the_shipped_images() {
+    let script = Images::new();
+    for part in [Part::Update, Part::Trial, Part::Rollback] {
+        let outcome = script.campaign(part, 124, 8);
+        println!(
+            "{part:?}: {} operations, {} power cuts, {} watchdog resets",
+            outcome.operations, outcome.power_cuts, outcome.watchdog_resets
+        );
+        assert_eq!(outcome.bricked, Vec::<String>::new());
+        assert_eq!(outcome.power_cuts, 6);
+        assert_eq!(outcome.watchdog_resets, 2);
     }
 }

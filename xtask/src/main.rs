@@ -9,6 +9,7 @@
 //! | `manual` | the AT reference, the completion of `squitter` and the firmware's list of licences, from the registry |
 //! | `size` | flash and RAM by crate and layer against the committed budget |
 //! | `reproduce` | builds the commit in two folders, or beside a package: same bytes? |
+//! | `usbip` | the image's USB driven by Debian's kernel in QEMU, an update over it; long |
 //! | `bench` | a benchmark; its last line is `result: key=value ...` |
 //!
 //! One file a command; what commands share has a file of its own (`thumb`, `keys`, `converter`, `hot`, `workspace`); what `squitter` shares too is the
@@ -29,6 +30,7 @@ mod reproduce;
 mod size;
 mod test;
 mod thumb;
+mod usbip;
 mod workspace;
 
 use std::process::ExitCode;
@@ -43,6 +45,7 @@ usage: cargo xtask <command>
   manual                 write docs/at-commands.md, the shell completion and the list of licences, from the registry
   size                   flash and RAM by crate and layer, against xtask/size-budget.txt
   reproduce [PACKAGE]    build the commit in two folders, or compare this checkout with a package: same bytes?
+  usbip                  Debian's kernel in QEMU drives the image's USB by USB/IP, updates it; needs qemu-system-x86, usbip, busybox-static
   bench <name> [--save]  run a benchmark; --save writes its table to docs/bench
 ";
 
@@ -56,6 +59,7 @@ fn main() -> ExitCode {
         ["check"] => check::run(),
         ["manual"] => manual::run(),
         ["reproduce", rest @ ..] => reproduce::run(rest),
+        ["usbip"] => usbip::run(),
         ["size"] => fw::run().and_then(|()| size::run()),
         ["bench", rest @ ..] => bench::run(rest),
         ["help" | "-h" | "--help"] => {

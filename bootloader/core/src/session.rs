@@ -19,6 +19,7 @@ use crate::update::{Update, UpdateError};
 use crate::verifier::Verifier;
 use crate::ymodem::{Event, Receiver};
 use boot_contract::boot_log::{SlotName, Standing};
+use boot_contract::hand_over::Cause;
 use boot_contract::header::board_name;
 use boot_contract::log_store::BootLog;
 use core::fmt::{self, Write};
@@ -56,12 +57,16 @@ impl Port {
 /// What a session needs of the device.
 pub trait Machine {
     type Flash: NorFlash;
+    /// Of a firmware's end, for people.
+    type Words: fmt::Display;
     /// The flash.
     fn flash(&mut self) -> &mut Self::Flash;
     /// Milliseconds since the reset.
     fn now_ms(&self) -> u64;
     /// Sends bytes; what a port cannot take is lost.
     fn send(&mut self, port: Port, bytes: &[u8]);
+    /// What the firmware that ran before could still say of its end, if it said anything.
+    fn last_words(&self) -> Option<Self::Words>;
 }
 
 /// How a session ends.
@@ -95,7 +100,7 @@ struct Transfer<'a> {
 pub struct Session<'a> {
     terms: Terms<'a>,
     log: BootLog,
-    after_power_on: bool,
+    cause: Cause,
     verifier: Verifier,
     lines: [Lines; 2],
     locked: bool,
@@ -107,13 +112,13 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// After a reset. `terms.floor` is taken from the log.
-    pub fn new(terms: Terms<'a>, log: BootLog, after_power_on: bool, locked: bool) -> Self {
+    /// After a reset of this cause. `terms.floor` is taken from the log.
+    pub fn new(terms: Terms<'a>, log: BootLog, cause: Cause, locked: bool) -> Self {
         let floor = log.state().floor;
         Self {
             terms: Terms { floor, ..terms },
             log,
-            after_power_on,
+            cause,
             verifier: Verifier::new(),
             lines: [Lines::new(); 2],
             locked,
@@ -122,6 +127,10 @@ impl<'a> Session<'a> {
             tell_at_ms: 0,
             outcome: None,
         }
+    }
+
+    fn after_power_on(&self) -> bool {
+        self.cause == Cause::PowerOn
     }
 
     /// What a port says when it opens.
@@ -200,7 +209,7 @@ impl<'a> Session<'a> {
             }
             Command::Unlock => {
                 let verified = self.verify_now(machine);
-                match choose(self.log.state(), &verified, self.after_power_on) {
+                match choose(self.log.state(), &verified, self.after_power_on()) {
                     Step::Stay(reason) => self.fail(machine, port, reason.reason()),
                     Step::Run { .. } | Step::Reject(_) => {
                         self.locked = false;
@@ -247,7 +256,7 @@ impl<'a> Session<'a> {
 
     fn firmware_version(&mut self, machine: &mut impl Machine, port: Port) {
         let verified = self.verify_now(machine);
-        let runs = match choose(self.log.state(), &verified, self.after_power_on) {
+        let runs = match choose(self.log.state(), &verified, self.after_power_on()) {
             Step::Run { slot, .. } => verified[slot.index()],
             Step::Reject(_) => Err(Refusal::Rejected),
             Step::Stay(reason) => Err(reason),
@@ -288,6 +297,11 @@ impl<'a> Session<'a> {
                 }
             }
         }
+        let cause = self.cause.name();
+        say(machine, port, format_args!("Started by: {cause}\r\n"));
+        if let Some(words) = machine.last_words() {
+            say(machine, port, format_args!("Last words: {words}\r\n"));
+        }
         let floor = self.terms.floor;
         say(machine, port, format_args!("Security counter: {floor}\r\n"));
         self.ok(machine, port);
@@ -306,7 +320,7 @@ impl<'a> Session<'a> {
     /// Writes what must be logged, and decides.
     fn run(&mut self, machine: &mut impl Machine, verified: &Verified) -> Result<(), Refusal> {
         loop {
-            let (record, run) = match choose(self.log.state(), verified, self.after_power_on) {
+            let (record, run) = match choose(self.log.state(), verified, self.after_power_on()) {
                 Step::Reject(record) => (Some(record), None),
                 Step::Run { slot, first } => (first, Some(slot)),
                 Step::Stay(reason) => return Err(reason),

@@ -159,29 +159,39 @@ fn confirmed_in_b(said: &[String]) -> bool {
 const NEW: [u8; 4] = [9, 8, 7, 6];
 
 #[test]
-fn a_device_in_its_window_is_updated_over_its_uart() {
+fn a_device_in_its_window_is_held_there_over_its_uart() {
     let mut wire = Wire::in_window(Port::Comms);
-    let bytes = package(NEW, |_| {});
-    let mut said = Vec::new();
     let mut talk = Talk { line: &mut wire };
-    assert_eq!(
-        talk.enter(FIXED_BAUD, ENTER_MS).unwrap(),
-        Some(State::Bootloader)
-    );
-    let mut update = Update {
-        talk,
-        version: String::new(),
-        run_baud: FIXED_BAUD,
-        say: &mut |text| said.push(text.to_owned()),
-    };
-    let sent = update.send("new.sqt", &bytes, &mut |_, _| {});
-    assert!(sent.is_ok(), "{sent:?}");
+    let entered = talk.enter(FIXED_BAUD, ENTER_MS).unwrap();
+    assert_eq!(entered, Some(State::Bootloader));
+    let slots = talk.slots().unwrap();
+    assert!(slots[0].starts_with("Slot A: 0.1.0.0 ("), "{slots:?}");
+    wire.board.run_ms(5_000).expect("the chip runs");
+    assert_eq!(wire.board.chip.resets.len(), 1, "it was started");
+}
+
+/// COMMS_UART answers nothing in RUN: `AT+CONFIG=1`, the bootloader, the transfer, and the question for its confirmation in CONFIGURATION again.
+#[test]
+fn a_device_that_runs_is_updated_over_its_uart() {
+    let mut wire = Wire::running(Port::Comms);
+    let (said, done) = update(&mut wire, &package(NEW, |_| {}));
+    assert!(done.is_ok(), "{done:?} {said:#?}");
+    assert!(said[0].starts_with("Slot A: 0.1.0.0 ("), "{said:#?}");
+    assert!(confirmed_in_b(&said), "{said:#?}");
+    // It was left in RUN, not in CONFIGURATION.
     wire.port = Port::Console;
-    wire.board.run_ms(16_000).expect("the chip runs");
-    wire.board.console_read();
-    let told = Talk { line: &mut wire }.info().unwrap().expect("an answer");
-    assert!(told.version.starts_with("9.8.7.6 ("), "{told:?}");
-    assert_eq!((told.slot, told.confirmed), (Some('B'), true));
+    let state = Talk { line: &mut wire }.state().unwrap();
+    assert_eq!(state, State::Run);
+}
+
+#[test]
+fn a_device_in_configuration_is_updated() {
+    let mut wire = Wire::running(Port::Console);
+    let mut talk = Talk { line: &mut wire };
+    assert!(talk.configure(FIXED_BAUD).unwrap());
+    let (said, done) = update(&mut wire, &package(NEW, |_| {}));
+    assert!(done.is_ok(), "{done:?} {said:#?}");
+    assert!(confirmed_in_b(&said), "{said:#?}");
 }
 
 #[test]

@@ -193,6 +193,12 @@ impl Script {
                 board.run_ms(1).map_err(|error| error.to_string())?;
             }
             board.run_ms(50).map_err(|error| error.to_string())?;
+            // From a reset to the bootloader's first lines nothing counts: a hang there would be the crystal's or the chip's, and power's to mend.
+            let counts = |board: &mut Board| board.chip.bus.watchdog.next_event() != u64::MAX;
+            let counted = board.run_until(2, counts);
+            if !counted.map_err(|error| error.to_string())? {
+                return Err("the watchdog does not count".to_string());
+            }
             board.chip.hang(0);
         } else {
             outcome.power_cuts += 1;

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 pub mod adc;
 mod astray;
 pub mod bus;
+mod cdc_data;
 mod clocks;
 pub mod cpu;
 pub mod crystal;
@@ -40,8 +41,10 @@ mod timer;
 pub mod trace;
 pub mod uart;
 mod usb;
+mod usb_control;
 pub mod usb_host;
 mod usb_strings;
+pub mod usb_urbs;
 mod vreg;
 mod watchdog;
 

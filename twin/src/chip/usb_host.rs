@@ -13,7 +13,10 @@
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
+use super::cdc_data::{Endpoints, data_endpoints};
 use super::usb::{Data, Handshake, Usb};
+use super::usb_control::{Control, Stage};
+use super::usb_urbs::{Completed, Ended, Urbs};
 
 /// Transactions a frame holds.
 const SLOTS: u64 = 19;
@@ -26,36 +29,11 @@ const CONTROL_TIMEOUT_FRAMES: u64 = 5_000;
 const SUSPEND_FRAMES: u64 = 3;
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
-enum Stage {
-    Setup,
-    DataIn,
-    DataOut,
-    StatusIn,
-    StatusOut,
-}
-
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Control {
-    setup: [u8; 8],
-    data: Vec<u8>,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 enum State {
     Detached,
     Debounce(u64),
     Resetting,
     Running,
-}
-
-/// Where the CDC data interface was found.
-#[derive(Clone, Copy, Default, Debug, Serialize, Deserialize)]
-struct Endpoints {
-    bulk_in: usize,
-    bulk_out: usize,
-    /// The PID that the next packet of each must have.
-    in_pid: bool,
-    out_pid: bool,
 }
 
 /// The host and its view of the device.
@@ -105,6 +83,9 @@ pub struct UsbHost {
     pub received: u64,
     /// What went wrong, for people.
     pub faults: Vec<String>,
+    /// The driver is outside; the twin's own is quiet.
+    #[serde(skip)]
+    pub urbs: Option<Urbs>,
 }
 
 impl Default for UsbHost {
@@ -140,6 +121,7 @@ impl Default for UsbHost {
             from_device: VecDeque::new(),
             received: 0,
             faults: Vec::new(),
+            urbs: None,
         }
     }
 }
@@ -171,6 +153,9 @@ impl UsbHost {
         self.queue.clear();
         self.descriptors.clear();
         self.stage = Stage::Setup;
+        if let Some(urbs) = &mut self.urbs {
+            urbs.detach();
+        }
     }
 
     /// Puts the bus to sleep (no frames any longer), or ends that.
@@ -264,7 +249,10 @@ impl UsbHost {
                 }
                 false
             }
-            State::Running if self.queue.is_empty() => self.bulk(usb),
+            State::Running if self.queue.is_empty() => match &mut self.urbs {
+                Some(urbs) => urbs.slot(usb),
+                None => self.bulk(usb),
+            },
             State::Running => self.control(usb),
         }
     }
@@ -273,6 +261,35 @@ impl UsbHost {
         self.queue.push_back(Control {
             setup,
             data: data.to_vec(),
+            id: None,
+        });
+    }
+
+    /// A control transfer of the driver outside.
+    pub fn submit_control(&mut self, id: u32, setup: [u8; 8], data: &[u8]) {
+        self.request(setup, data);
+        if let Some(last) = self.queue.back_mut() {
+            last.id = Some(id);
+        }
+    }
+
+    /// Tells the driver outside of the end of its transfer at the head of the queue.
+    fn tell(&mut self, transfer: &Control, ended: Ended) {
+        let (Some(id), Some(urbs)) = (transfer.id, &mut self.urbs) else {
+            return;
+        };
+        match (ended, [transfer.setup[0], transfer.setup[1]]) {
+            (Ended::Done, [0x00, 9] | [0x01, 11]) => urbs.configured(),
+            (Ended::Done, [0x02, 1]) => urbs.halt_cleared(transfer.setup[4]),
+            _ => {}
+        }
+        let data = std::mem::take(&mut self.buffer);
+        let moved = data.len().max(self.moved);
+        urbs.completed.push_back(Completed {
+            id,
+            ended,
+            data,
+            moved,
         });
     }
 
@@ -293,6 +310,7 @@ impl UsbHost {
         let length = usize::from(u16::from_le_bytes([transfer.setup[6], transfer.setup[7]]));
         let to_host = transfer.setup[0] & 0x80 != 0;
         if self.stage != Stage::Setup && self.frame > self.started + CONTROL_TIMEOUT_FRAMES {
+            self.tell(&transfer, Ended::TimedOut);
             self.fault(format!(
                 "control transfer {:02x?} timed out",
                 transfer.setup
@@ -334,6 +352,7 @@ impl UsbHost {
                 return true;
             }
             (_, Handshake::Stall) => {
+                self.tell(&transfer, Ended::Stalled);
                 self.fault(format!("control transfer {:02x?} stalled", transfer.setup));
                 return true;
             }
@@ -368,6 +387,9 @@ impl UsbHost {
     }
 
     fn finished(&mut self, transfer: &Control) {
+        if transfer.id.is_some() {
+            return self.tell(transfer, Ended::Done);
+        }
         if transfer.setup[1] == 6 {
             let kind = transfer.setup[3];
             let bytes = std::mem::take(&mut self.buffer);
@@ -382,6 +404,12 @@ impl UsbHost {
                 (2, 4..=9) => {
                     let total = u16::from_le_bytes([bytes[2], bytes[3]]).to_le_bytes();
                     self.request([0x80, 6, 0, 2, 0, 0, total[0], total[1]], &[]);
+                }
+                (2, _) if self.urbs.is_some() => {
+                    // The rest is the driver's.
+                    if let Some(urbs) = &mut self.urbs {
+                        urbs.ready = true;
+                    }
                 }
                 (2, _) => match data_endpoints(&bytes) {
                     Some(endpoints) => {
@@ -463,30 +491,4 @@ impl UsbHost {
         }
         self.request([0x02, 1, 0, 0, endpoint as u8, 0, 0, 0], &[]);
     }
-}
-
-/// Finds the bulk endpoints of the first CDC data interface (class 0x0a) in a configuration descriptor.
-fn data_endpoints(mut rest: &[u8]) -> Option<Endpoints> {
-    let mut found = Endpoints::default();
-    let mut in_data_interface = false;
-    while let [len, kind, ..] = *rest {
-        let len = usize::from(len);
-        if len < 2 || len > rest.len() {
-            break;
-        }
-        match kind {
-            4 if len >= 9 => in_data_interface = rest[5] == 0x0a,
-            5 if len >= 7 && in_data_interface => {
-                let n = usize::from(rest[2] & 0xf);
-                if rest[2] & 0x80 != 0 {
-                    found.bulk_in = n;
-                } else {
-                    found.bulk_out = n;
-                }
-            }
-            _ => {}
-        }
-        rest = &rest[len..];
-    }
-    (found.bulk_in != 0 && found.bulk_out != 0).then_some(found)
 }
