@@ -1,5 +1,7 @@
 //! Long runs of the twin: `--day` a day with the receiver off, `--hour` an hour's traffic in parts of a minute. Without either, both in short
 //! (an hour asleep, a minute of traffic). Fails on drift, on a leak, on counters that do not balance.
+//!
+//! The hour takes one to three of a quiet processor. Each part ends in a snapshot in `target/bench`: `--hour --go-on` goes on from the last one.
 
 use std::process::ExitCode;
 
@@ -15,13 +17,14 @@ fn main() -> ExitCode {
     if !has("--bench") {
         return ExitCode::SUCCESS;
     }
-    let (day, hour) = (has("--day"), has("--hour"));
+    let (day, hour, go_on) = (has("--day"), has("--hour"), has("--go-on"));
     let hours = if day { 24 } else { 1 };
     let minutes = if hour { 60 } else { 1 };
     let both = !day && !hour;
     match run(
         if day || both { hours } else { 0 },
         if hour || both { minutes } else { 0 },
+        go_on,
     ) {
         Ok(()) => ExitCode::SUCCESS,
         Err(reason) => {
@@ -31,7 +34,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(hours: u64, minutes: u64) -> Result<(), String> {
+fn run(hours: u64, minutes: u64, go_on: bool) -> Result<(), String> {
     let mut bench = Bench::new("twin-long", "what,seconds,drift_us,grown_bytes");
     let (mut drift, mut grown) = (0, 0);
     if hours > 0 {
@@ -56,16 +59,21 @@ fn run(hours: u64, minutes: u64) -> Result<(), String> {
     }
     let mut frames = 0;
     if minutes > 0 {
-        let mut air = OnTheAir::new(&tests::log())?;
+        let kept = bench.file("device");
+        let mut air = if go_on {
+            OnTheAir::go_on(&tests::log(), &kept)?
+        } else {
+            OnTheAir::new(&tests::log())?
+        };
         let before = resident_bytes();
-        for minute in 0..minutes {
+        while air.parts < minutes {
             air.part(60)?;
+            air.keep(&kept)?;
             frames = air.frames;
             grown = resident_bytes().saturating_sub(before);
             bench.line(&format!(
                 "on the air, minute {:>2}: {frames} frames so far, {} overruns, {grown} bytes more",
-                minute + 1,
-                air.overruns
+                air.parts, air.overruns
             ));
             bench.row(format!("air,60,0,{grown}"));
             if air.overruns != 0 || grown > GROWTH {

@@ -119,6 +119,13 @@ impl Bench {
         self.rows.push(row);
     }
 
+    /// `target/bench/<name>.<extension>`, for what a run leaves to the next.
+    pub fn file(&self, extension: &str) -> PathBuf {
+        root()
+            .join("target/bench")
+            .join(format!("{}.{extension}", self.name))
+    }
+
     /// Writes `target/bench/<name>.csv`, with `--save` also `docs/bench/<name>.txt`, and prints the result line, which is the last.
     pub fn finish(self, result: &str) -> std::io::Result<()> {
         let folder = root().join("target/bench");

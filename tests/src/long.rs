@@ -1,8 +1,11 @@
 //! Long runs of the twin: a device asleep, and a device on the air, watched for drift, leaks and counters that do not balance.
 
+use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
+use std::sync::Arc;
 
 use twin::board::{Board, TICK_HZ};
+use twin::chip::pins::Again;
 use twin::front_end::{FrontEnd, Player};
 use twin::source::{Air, AirOptions, MessageLog};
 
@@ -104,10 +107,23 @@ pub fn sleep(board: &mut Board, seconds: u64) -> Result<Slept, String> {
 pub struct OnTheAir {
     board: Board,
     log: std::path::PathBuf,
+    /// Parts played.
+    pub parts: u64,
     /// Cycles and captured words at the last look.
     last: Option<(u64, u64)>,
     pub overruns: u64,
     pub frames: u64,
+}
+
+/// The log from its start, as often as it is asked for.
+fn source(log: &Path) -> Result<Again, String> {
+    MessageLog::open(log, SPACING_PS).map_err(|e| e.to_string())?;
+    let log = log.to_owned();
+    Ok(Arc::new(move || {
+        let messages = MessageLog::open(&log, SPACING_PS).expect("it was opened before");
+        let air = Air::new(messages, AirOptions::default());
+        Box::new(Player::new(air, &FrontEnd::ADSBEE_1090))
+    }))
 }
 
 impl OnTheAir {
@@ -119,6 +135,7 @@ impl OnTheAir {
         Ok(Self {
             board,
             log: log.into(),
+            parts: 0,
             last: None,
             overruns: 0,
             frames: 0,
@@ -127,17 +144,56 @@ impl OnTheAir {
 
     /// Plays the log from its start for `seconds`: what does not balance, if anything.
     pub fn part(&mut self, seconds: u64) -> Result<(), String> {
-        let messages = MessageLog::open(&self.log, SPACING_PS).map_err(|e| e.to_string())?;
-        let air = Air::new(messages, AirOptions::default());
-        let source = Box::new(Player::new(air, &FrontEnd::ADSBEE_1090));
-        self.board.play(source).map_err(|e| e.to_string())?;
+        let source = source(&self.log)?;
+        self.board
+            .play_repeatable(source)
+            .map_err(|e| e.to_string())?;
         for _ in 0..seconds * 10 {
             self.board.run_ms(100).map_err(|e| e.to_string())?;
             // What nobody reads must not pile up in the host.
             self.board.console_read();
             self.board.comms_read();
         }
+        self.parts += 1;
         self.look()
+    }
+
+    /// Keeps device and counts in a file, so that a run that is broken off goes on from there.
+    pub fn keep(&self, file: &Path) -> Result<(), String> {
+        let (cycles, words) = self.last.ok_or("nothing was played yet")?;
+        let head = [self.parts, self.frames, self.overruns, cycles, words];
+        let half = file.with_extension("half");
+        let write = || -> std::io::Result<()> {
+            let mut to = std::fs::File::create(&half)?;
+            writeln!(to, "{}", head.map(|n| n.to_string()).join(" "))?;
+            self.board.save(&mut to).map_err(std::io::Error::other)?;
+            std::fs::rename(&half, file)
+        };
+        write().map_err(|error| format!("{}: {error}", file.display()))
+    }
+
+    /// The device and the counts that [`OnTheAir::keep`] left.
+    pub fn go_on(log: &Path, file: &Path) -> Result<Self, String> {
+        let read = || -> Result<Self, String> {
+            let mut from = BufReader::new(std::fs::File::open(file).map_err(|e| e.to_string())?);
+            let mut head = String::new();
+            from.read_line(&mut head).map_err(|e| e.to_string())?;
+            let numbers: Result<Vec<u64>, _> = head.split_whitespace().map(str::parse).collect();
+            let Ok(&[parts, frames, overruns, cycles, words]) = numbers.as_deref() else {
+                return Err("not what this bench keeps".into());
+            };
+            let source = source(log)?;
+            let board = Board::resume(&mut from, Some(&source)).map_err(|e| e.to_string())?;
+            Ok(Self {
+                board,
+                log: log.into(),
+                parts,
+                last: Some((cycles, words)),
+                overruns,
+                frames,
+            })
+        };
+        read().map_err(|error| format!("{}: {error}", file.display()))
     }
 
     fn look(&mut self) -> Result<(), String> {

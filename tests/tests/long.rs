@@ -20,10 +20,15 @@ fn a_minute_asleep_is_a_minute_to_the_microsecond() {
 fn a_minute_on_the_air_in_two_parts_balances() {
     let before = resident_bytes();
     let mut air = OnTheAir::new(&tests::log()).expect("the image boots");
-    for part in 0..2 {
-        air.part(30)
-            .unwrap_or_else(|error| panic!("part {part}: {error}"));
-    }
+    air.part(30).expect("the first part");
+    // The second goes on from what the first left in a file.
+    let kept = tests::root().join("target/long-test.device");
+    air.keep(&kept).expect("it is kept");
+    let first = air.frames;
+    let mut air = OnTheAir::go_on(&tests::log(), &kept).expect("it goes on");
+    air.part(30).expect("the second part");
+    assert_eq!(air.parts, 2);
+    assert!(air.frames > first, "{first} and {}", air.frames);
     assert_eq!(air.overruns, 0);
     assert!(air.frames > 100, "{}", air.frames);
     let grown = resident_bytes().saturating_sub(before);
