@@ -153,7 +153,5 @@ fn quality(aircraft: &Aircraft, now_ms: u64) -> Result<(), Wrong> {
     within("SIL", status.map(|status| status.sil()), 0, 3)?;
     within("length", aircraft.airframe().greatest_m(), 1, 90)?;
     within("level", aircraft.level_cdbm(), -0x2000, -1)?;
-    within("quality", aircraft.quality_cdb(), 1, 0xFFF)?;
-    let counts = aircraft.counts_last_second();
-    within("squitters", Some(counts.squitters), 0, counts.mode_s.into())
+    within("quality", aircraft.quality_cdb(), 1, 0xFFF)
 }
