@@ -1,12 +1,19 @@
 //! The sensitivity table: frames decoded of 150 in every simulated scene, native engine, each slicer. `--save` renews the committed file, against which
 //! `tests/tests/sensitivity.rs` holds a few of its rows.
+//!
+//! `--genie`: instead, just above the noise, where frames are lost and what could be decoded at best (`tests::reception::genie`); `--floor DB` is the height of a standing trigger
+//! level over the noise, `--rc-over MV` moves the following one.
 
 use tests::Bench;
-use tests::reception::table;
+use tests::reception::native::FLOOR_OVER_NOISE_DB;
+use tests::reception::{genie, table};
 
 fn main() -> std::io::Result<()> {
     if !tests::is_bench() {
         return Ok(());
+    }
+    if std::env::args().any(|argument| argument == "--genie") {
+        return at_best();
     }
     let mut bench = Bench::new("sensitivity", "row");
     bench.line(&format!(
@@ -22,4 +29,22 @@ fn main() -> std::io::Result<()> {
         points += 1;
     }
     bench.finish(&format!("points={points} frames={}", table::FRAMES))
+}
+
+/// Ratios at which the genie is asked, by the names of their points.
+const WEAK: [&str; 5] = ["snr 9", "snr 10", "snr 11", "snr 12", "snr 13"];
+
+fn at_best() -> std::io::Result<()> {
+    let floor_db = tests::number_option("--floor", FLOOR_OVER_NOISE_DB);
+    let rc_over_mv = tests::number_option("--rc-over", 0.0);
+    let mut bench = Bench::new("sensitivity-genie", "row");
+    bench.line(&genie::heading());
+    let points = table::points();
+    for point in points.iter().filter(|point| WEAK.contains(&point.name)) {
+        for row in genie::rows(point, floor_db, rc_over_mv) {
+            bench.line(&row);
+            bench.row(row);
+        }
+    }
+    bench.finish(&format!("points={} frames={}", WEAK.len(), table::FRAMES))
 }

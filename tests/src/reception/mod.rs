@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `arrival` | errors of the time of arrival |
 //! | `fair` | which decoded frames of a recording count |
+//! | `genie` | what could be decoded at best, the starts being known |
 //! | `native` | a scene or recording through a slicer and the native engine |
 //! | `device` | the same through the shipped image in the twin |
 //! | `limit` | long frames back to back |
@@ -17,6 +18,7 @@
 pub mod arrival;
 pub mod device;
 pub mod fair;
+pub mod genie;
 pub mod limit;
 pub mod mutability;
 pub mod native;
