@@ -12,7 +12,7 @@
 //! |---|---|---|
 //! | `trials_exact` | 2^24 (DF11 with a code: 79 times as often) | nothing (with a code: an address heard) |
 //! | `trials_address` | 2^24 / addresses heard | certain bits, fields with assigned values |
-//! | `trials_repair` | 2^24; those that fitted are `repairs_fitting` | an address heard |
+//! | `trials_repair` | 2^24; those that fitted are `repairs_fitting` | an address heard, or (DF17, 18) certain bits and fields with assigned values |
 //! | `trials_address_repair` | 2^24 / addresses heard | certain bits, fields with assigned values |
 //!
 //! The core has no atomic add; with a single writer a load and a store are one.
@@ -99,7 +99,7 @@ stages: {
     accepted_interrogator,
     /// Accepted: address parity of an address heard lately.
     accepted_address,
-    /// Accepted: DF11, 17 or 18 of an address heard lately, one or two bits repaired.
+    /// Accepted: DF11 of an address heard lately, or DF17 or 18, one or two bits repaired.
     accepted_repaired,
     /// Accepted: address parity of an address heard lately, one bit repaired.
     accepted_address_repaired,

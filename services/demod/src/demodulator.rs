@@ -44,6 +44,9 @@ const TAIL_SAMPLES: u64 = 96;
 /// Words behind which a frame is no longer measured, 2 ms: a core that is so late has no time for it, and the rings of second sampler and converter, of 955 and 1163
 /// words, are far from their end.
 const MOST_MEASURED_AGE: u64 = 500;
+/// Words from the start of an accepted frame within which candidates are tried in haste, 256 us: two frames. Near the channel's limit that is always so; what is
+/// found then follows from the samples alone, as everywhere.
+const HASTY_WORDS: u64 = 64;
 /// Words before strong bits began in which their preamble may stand, tried.
 const TRIED_WITHIN: u32 = 8;
 
@@ -241,11 +244,13 @@ impl Demodulator {
         let start = at * u64::from(SAMPLES_PER_WORD);
         add(&counters.candidates, ones(hits));
         let taken = self.free_from.saturating_sub(start);
+        let accepted = self.accepted_at / u64::from(SAMPLES_PER_WORD);
+        let hasty = self.gate.is_flooded() || at.saturating_sub(accepted) < HASTY_WORDS;
         let mut rest = from_phase(hits, taken.min(u64::from(SAMPLES_PER_WORD)) as u32);
         add(&counters.superseded, ones(hits ^ rest));
         while rest != 0 {
             let sample = first_phase(rest);
-            let Some(tried) = try_phases(ring, word, sample, &self.heard, counters) else {
+            let Some(tried) = try_phases(ring, word, sample, hasty, &self.heard, counters) else {
                 add(&counters.rejected_by_score, 1);
                 rest = from_phase(rest, sample + 1);
                 continue;

@@ -1,4 +1,4 @@
-//! Can these be the fields of a reply? Asked of address-parity frames, whose parity proves little.
+//! Can these be the fields of a reply? Asked of address-parity frames, whose parity proves little, and of repaired squitters.
 //!
 //! | DF | bits | field | what a transponder sends |
 //! |---|---|---|---|
@@ -23,6 +23,32 @@ pub(crate) fn fields(frame: &[u8]) -> bool {
         4 | 5 | 20 | 21 => first & 0x07 <= 5 && !matches!(second >> 3, 8..=15),
         _ => true,
     }
+}
+
+/// Whether a repaired squitter (DF17, 18) of an aircraft not heard lately may be believed: its fields have values that transponders send.
+///
+/// | DF | bits | field | what is sent |
+/// |---|---|---|---|
+/// | 17 | 6-8 | CA | 4 to 7: a transponder that squitters positions is of level 2 or more |
+/// | 18 | 6-8 | CF | 0 to 6; 7 is reserved |
+/// | 17, 18 | 9-32 | AA | neither all zeros nor all ones |
+/// | 17, 18 | 33-37 | TC | 0 to 22, 28, 29 and 31; the others are reserved or for tests |
+///
+/// A fit by chance passes two times in five (DF17). DF11 has too few bits to be believed so. Source: ICAO Annex 10 Volume IV, 3.1.2.8.6; DO-260B, table 2-11.
+#[inline(never)]
+pub(crate) fn squitter(frame: &[u8]) -> bool {
+    let [first, a, b, c, fifth, ..] = *frame else {
+        return false;
+    };
+    let capability = first & 0x07;
+    let known = match first >> 3 {
+        17 => capability >= 4,
+        18 => capability != 7,
+        _ => return false,
+    };
+    known
+        && ![[0; 3], [0xFF; 3]].contains(&[a, b, c])
+        && matches!(fifth >> 3, 0..=22 | 28 | 29 | 31)
 }
 
 #[cfg(test)]
@@ -56,5 +82,22 @@ mod tests {
             assert!(!fields(&frame), "{frame:02x?}");
         }
         assert!(!fields(&[0x20]));
+    }
+
+    #[test]
+    fn squitters_are_believed_by_their_fields() {
+        assert!(squitter(&[0x8D, 0x4C, 0xA7, 0xE8, 0x58]));
+        assert!(squitter(&[0x90, 0x4C, 0xA7, 0xE8, 0xF8]));
+        for frame in [
+            [0x8B, 0x4C, 0xA7, 0xE8, 0x58],
+            [0x97, 0x4C, 0xA7, 0xE8, 0x58],
+            [0x8D, 0x00, 0x00, 0x00, 0x58],
+            [0x8D, 0xFF, 0xFF, 0xFF, 0x58],
+            [0x8D, 0x4C, 0xA7, 0xE8, 0xC0],
+            [0x5D, 0x4C, 0xA7, 0xE8, 0x58],
+        ] {
+            assert!(!squitter(&frame), "{frame:02x?}");
+        }
+        assert!(!squitter(&[0x8D]));
     }
 }

@@ -9,7 +9,7 @@
 //!            ─ S(a) = an address heard?      10 trials     address parity: at most one
 //! ```
 //! Each trial fits by chance once in 2^24 (address parity: once for every address heard), so trials are counted, and what fits must come from an
-//! address heard exactly within the last minute. The bits of DF are never flipped: they decide the length and the rule.
+//! address heard exactly within the last minute, or be a squitter (DF17, 18) of certain bits and plausible fields. The bits of DF are never flipped: they decide the length and the rule.
 //!
 //! Any five wrong bits or fewer of 112 are seen by this code (distance 6), so two patterns of at most two bits never share a residual.
 
@@ -23,8 +23,10 @@ use mode_s::frame::LONG_BYTES;
 const CANDIDATES: usize = 10;
 /// Bits of DF.
 const DF_BITS: u8 = 5;
-/// A certainty above every margin.
-const NONE_YET: u8 = 16;
+/// The certainty of a bit all of whose samples are as they should be: such a bit is never flipped.
+const NONE_YET: u8 = 9;
+/// What a place without a bit adds to a residual: no residual and no address has these bits.
+const NO_SYNDROME: u32 = u32::MAX;
 /// One in each byte.
 const EACH_BYTE: u32 = 0x0101_0101;
 /// Bits of a long frame.
@@ -77,7 +79,7 @@ impl Flips {
     }
 }
 
-/// The ten least certain bits of a frame, the least certain first.
+/// The ten least certain bits of a frame, the least certain first; fewer where the others are beyond doubt.
 pub(crate) struct Weakest {
     bits: [u8; CANDIDATES],
     syndromes: [u32; CANDIDATES],
@@ -109,11 +111,11 @@ impl Weakest {
         let first = LONG_BITS - bytes * 8;
         Self {
             bits: weakest.map(|(_, bit)| bit),
-            syndromes: weakest.map(|(_, bit)| {
-                SYNDROMES
-                    .get(first + usize::from(bit))
-                    .copied()
-                    .unwrap_or(0)
+            syndromes: weakest.map(|(certainty, bit)| {
+                let syndrome = SYNDROMES.get(first + usize::from(bit)).copied();
+                syndrome
+                    .filter(|_| certainty < NONE_YET)
+                    .unwrap_or(NO_SYNDROME)
             }),
         }
     }
@@ -227,7 +229,12 @@ mod tests {
         let ring = ring(&DF17, &weak);
         let weakest = Weakest::of(Aligned::new(&ring, 0, 0), LONG_BYTES);
         assert_eq!(weakest.bits[..2], [17, 90]);
-        assert!(weakest.bits.iter().all(|&bit| bit >= DF_BITS));
+        // The other bits are beyond doubt, and bit 0 is one of DF.
+        assert!(
+            weakest.syndromes[2..]
+                .iter()
+                .all(|&syndrome| syndrome == NO_SYNDROME)
+        );
     }
 
     #[test]

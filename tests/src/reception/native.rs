@@ -9,9 +9,9 @@ use twin::front_end::detector::millivolt;
 use twin::front_end::{FrontEnd, Level, Player, Slicer};
 use twin::native::{self, Options};
 
-/// Threshold of a slicer whose trigger level is a floor, over the noise in the whole path, dB: the middle of the range of 4 to 6 that decodes most just above the
-/// noise (`bench reception --short --floor DB`).
-pub const FLOOR_OVER_NOISE_DB: f32 = 5.0;
+/// Threshold of a slicer whose trigger level is a floor, over the noise in the whole path, dB: what decodes most just above the noise
+/// (`bench sensitivity --genie --floor DB`).
+pub const FLOOR_OVER_NOISE_DB: f32 = 4.0;
 /// Picoseconds a tick, times three.
 const THREE_TICKS_PS: u64 = 25_000;
 /// Parts of a tick in an arrival.

@@ -91,11 +91,10 @@ impl Outcome {
             Some(count) => count as f64,
             None => panic!("the demodulator counts no {name}"),
         };
-        let by_parity = count("trials_exact");
+        // A repaired squitter may be of an unknown address; that the others may not makes the measured number smaller.
+        let by_parity = count("trials_exact") + count("trials_repair");
         let by_address = count("trials_address") + count("trials_address_repair");
-        // A repaired frame must be of a known address, too.
-        let known = self.known as f64 / REMAINDERS;
-        (by_parity + count("trials_repair") * known + by_address * self.known as f64) / REMAINDERS
+        (by_parity + by_address * self.known as f64) / REMAINDERS
     }
 
     /// A counter of the demodulator.
