@@ -10,7 +10,7 @@ use crate::self_test;
 use crate::store::{SettingsStore, Trouble};
 use hal::uart::actual_baud;
 use mode_s::{Icao, Position};
-use settings::choices::{RawFilter, RxSource};
+use settings::choices::RxSource;
 use settings::{MAX_BYTES, Settings, Stored};
 use shell::{BaudRates, Device, Failure, Identity, Out, Report, Saving};
 use tracker::RxPosition;
@@ -22,9 +22,6 @@ impl Device for Receiver {
 
     fn apply(&mut self, settings: &Settings) -> Result<(), Failure> {
         let old = self.stored.settings;
-        if settings.raw_filter == RawFilter::All && old.raw_filter != RawFilter::All {
-            return Err("core 1 keeps no refused frames yet, only accepted ones can be sent");
-        }
         set_parts(&mut self.hardware, &mut self.store, &old, settings).map_err(Refused::reason)?;
         self.stored.settings = *settings;
         self.follow(&old);

@@ -6,7 +6,7 @@
 //! ```
 //! Everything here, and all it calls, is placed in SRAM by `linker/app.x`; interrupts stay masked.
 
-use core::sync::atomic::{AtomicI32, AtomicU32, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicI32, AtomicU32, Ordering};
 use demod::{Counters, Demodulator, RING_WORDS, RawFrame, Rings};
 use drivers::pulse_capture::PulseCapture;
 use heapless::spsc::Producer;
@@ -14,7 +14,10 @@ use heapless::spsc::Producer;
 /// Slots of the frame queue; it holds one frame less. 127 frames are 15 ms of back-to-back long frames.
 pub const QUEUE_SLOTS: usize = 128;
 
-/// What became of accepted frames at the queue: `offered = queued + dropped`.
+/// Refused frames enter the queue while fewer frames than this wait: the rest is kept for accepted ones.
+const REFUSED_WAITING: usize = QUEUE_SLOTS / 4;
+
+/// What became of frames at the queue: `offered = queued + dropped`, of accepted ones alone.
 pub struct QueueCounters {
     /// Frames the demodulator accepted.
     pub offered: AtomicU32,
@@ -22,6 +25,10 @@ pub struct QueueCounters {
     pub queued: AtomicU32,
     /// Frames lost because core 0 was late.
     pub dropped: AtomicU32,
+    /// Refused frames handed to core 0.
+    pub refused_queued: AtomicU32,
+    /// Refused frames for which there was no room.
+    pub refused_dropped: AtomicU32,
 }
 
 impl QueueCounters {
@@ -31,6 +38,8 @@ impl QueueCounters {
             offered: AtomicU32::new(0),
             queued: AtomicU32::new(0),
             dropped: AtomicU32::new(0),
+            refused_queued: AtomicU32::new(0),
+            refused_dropped: AtomicU32::new(0),
         }
     }
 }
@@ -43,6 +52,8 @@ pub struct Context {
     pub demod_counters: &'static Counters,
     /// The noise at the antenna as core 0 measures it, 1/100 dBm.
     pub floor_cdbm: &'static AtomicI32,
+    /// Whether core 0 wants refused frames, too.
+    pub wants_refused: &'static AtomicBool,
     pub queue: Producer<'static, RawFrame>,
     pub queue_counters: &'static QueueCounters,
     /// Microseconds this core slept.
@@ -78,19 +89,33 @@ fn block(context: &mut Context) {
         demodulator,
         demod_counters,
         floor_cdbm,
+        wants_refused,
         queue,
         queue_counters,
         ..
     } = context;
     demodulator.set_floor(floor_cdbm.load(Ordering::Relaxed) as i16);
+    demodulator.tell_refused(wants_refused.load(Ordering::Relaxed));
     let mut heard = false;
     let mut newest = || capture.written();
     demodulator.run(*rings, written, demod_counters, &mut newest, &mut |frame| {
         heard = true;
-        count(&queue_counters.offered);
-        match queue.enqueue(frame) {
-            Ok(()) => count(&queue_counters.queued),
-            Err(_) => count(&queue_counters.dropped),
+        let counters = &**queue_counters;
+        let (queued, dropped, has_room) = if frame.is_accepted() {
+            count(&counters.offered);
+            (&counters.queued, &counters.dropped, true)
+        } else {
+            let has_room = queue.len() < REFUSED_WAITING;
+            (
+                &counters.refused_queued,
+                &counters.refused_dropped,
+                has_room,
+            )
+        };
+        if has_room && queue.enqueue(frame).is_ok() {
+            count(queued);
+        } else {
+            count(dropped);
         }
     });
     if heard {

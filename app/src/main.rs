@@ -42,7 +42,7 @@ use boot_contract::hand_over::{Cause, HandOver};
 use clock::Clock;
 use confirm::{Confirm, Due};
 use console::Inputs;
-use core::sync::atomic::{AtomicI32, AtomicU32, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicI32, AtomicU32, Ordering};
 use core1::{Context, QUEUE_SLOTS, QueueCounters};
 use crash::Crash;
 use demod::{
@@ -85,6 +85,8 @@ static CORE1: TakeOnce<Option<Context>> = TakeOnce::new(None);
 static TRACKER: TakeOnce<Tracker<AIRCRAFT>> = TakeOnce::new(Tracker::new());
 /// The noise at the antenna, 1/100 dBm: core 0 measures, core 1 uses it.
 static FLOOR_CDBM: AtomicI32 = AtomicI32::new(Calibration::ADSBEE_1090.floor_cdbm as i32);
+/// Whether a port wants refused frames: core 0 knows, core 1 hands them on.
+static WANTS_REFUSED: AtomicBool = AtomicBool::new(false);
 static SHARED: SharedCounters = SharedCounters {
     capture: CaptureCounters::new(),
     demod: Counters::new(),
@@ -153,6 +155,7 @@ fn start() -> Option<core::convert::Infallible> {
         demodulator: Demodulator::new(Calibration::ADSBEE_1090),
         demod_counters: &SHARED.demod,
         floor_cdbm: &FLOOR_CDBM,
+        wants_refused: &WANTS_REFUSED,
         queue: producer,
         queue_counters: &SHARED.queue,
         idle_us: &SHARED.core1_idle_us,
@@ -226,6 +229,7 @@ fn start() -> Option<core::convert::Infallible> {
             if let Some(floor_cdbm) = receiver.look() {
                 FLOOR_CDBM.store(i32::from(floor_cdbm), Ordering::Relaxed);
             }
+            WANTS_REFUSED.store(receiver.wants_refused(), Ordering::Relaxed);
             led.beat(receiver.shows());
             next_beat_us = next_beat(now_us, capture_start_us);
             let stalled_ms = (now_us - block_seen_us) / 1000;

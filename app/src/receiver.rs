@@ -29,7 +29,7 @@ use drivers::pulse_capture::CaptureCounters;
 use hal::board::LED_GPIO;
 use hal::{boot, timer, watchdog};
 use heapless::spsc::Consumer;
-use mode_s::Message;
+use mode_s::{Frame, Message};
 use report::{Bits, FrameReport, Moment, Statistics};
 use reporter::{Context, Reporter};
 use settings::Stored;
@@ -164,36 +164,58 @@ impl Receiver {
                 self.decode.discarded = self.decode.discarded.wrapping_add(1);
                 continue;
             }
+            if !raw_frame.is_accepted() {
+                self.refused(&raw_frame, now);
+                continue;
+            }
             heard();
             let message = Message::decode(&raw_frame.frame);
             self.decode.count(message.parity);
-            let quality_cdb = match (raw_frame.level, self.air.floor_cdbm()) {
-                (Some(level), Some(floor)) => Some(level.saturating_sub(floor).max(0)),
-                _ => None,
-            };
-            // To the nearest tick.
-            let arrival = raw_frame.arrival + u64::from(raw_frame.arrival_parts >> 7);
-            let times = self.clock.times(arrival);
+            let received = raw_frame.received();
+            let report = self.report(&raw_frame, &received);
             let heard = Heard {
                 at_ms: raw_frame.arrival / TICKS_PER_MS,
-                level_cdbm: raw_frame.level,
-                quality_cdb,
+                level_cdbm: report.level_cdbm,
+                quality_cdb: report.quality_cdb,
                 is_repaired: raw_frame.repaired() != 0,
-                since_pps_ns: times.since_pps_ns,
+                since_pps_ns: report.times.since_pps_ns,
             };
             self.tracker.on_frame(&raw_frame.frame, &message, heard);
-            let received = raw_frame.received();
-            let report = FrameReport {
-                bits: Bits::ModeS(&received),
-                level_cdbm: raw_frame.level,
-                quality_cdb,
-                times,
-            };
             let context = context!(self, now);
             self.console.frame(&report, true, &context);
             self.comms.frame(&report, true, &context);
         }
         self.queue.ready()
+    }
+
+    /// A frame that core 1 refused: raw outputs alone may ask for it, no decoder sees it.
+    fn refused(&mut self, raw_frame: &RawFrame, now: Moment) {
+        self.decode.refused = self.decode.refused.wrapping_add(1);
+        let report = self.report(raw_frame, &raw_frame.frame);
+        let context = context!(self, now);
+        self.console.frame(&report, false, &context);
+        self.comms.frame(&report, false, &context);
+    }
+
+    /// What raw outputs tell of a frame whose bits as received are these.
+    fn report<'f>(&mut self, raw_frame: &RawFrame, received: &'f Frame) -> FrameReport<'f> {
+        let quality_cdb = match (raw_frame.level, self.air.floor_cdbm()) {
+            (Some(level), Some(floor)) => Some(level.saturating_sub(floor).max(0)),
+            _ => None,
+        };
+        // To the nearest tick.
+        let arrival = raw_frame.arrival + u64::from(raw_frame.arrival_parts >> 7);
+        FrameReport {
+            bits: Bits::ModeS(received),
+            level_cdbm: raw_frame.level,
+            quality_cdb,
+            times: self.clock.times(arrival),
+        }
+    }
+
+    /// Whether a port wants frames that were refused.
+    pub fn wants_refused(&self) -> bool {
+        self.console.wants_refused() || self.comms.wants_refused()
     }
 
     /// A look at the air: noise floor and trigger level. Gives the floor, 1/100 dBm.

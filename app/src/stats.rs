@@ -6,7 +6,7 @@
 //!   +STATS=AIR,high_permille=..,crossings=..,.. what the samples look like, trigger level, noise floor
 //!   +STATS=DEMOD,words=..,candidates=..,..      candidates = one outcome each, see services/demod
 //!   +STATS=TRIALS,trials_exact=..,..            parity checks by kind: what chance had
-//!   +STATS=QUEUE,offered=..,queued=..,dropped=..,waiting=..
+//!   +STATS=QUEUE,offered=..,queued=..,dropped=..,..,waiting=..
 //!   +STATS=DECODE,offered=..,exact=..,..
 //!   +STATS=TRACKER,offered=..,born=..,..        see services/tracker
 //!   +STATS=STORE,saves=..,..,place=..,loaded=.. saves: since the first; a bank's pages were written a quarter as often
@@ -21,7 +21,8 @@
 //! |---|
 //! | DEMOD the five accepted = QUEUE offered |
 //! | QUEUE offered = queued + dropped |
-//! | QUEUE queued = DECODE offered + DECODE discarded + QUEUE waiting |
+//! | DEMOD handed_on = QUEUE refused_queued + refused_dropped |
+//! | QUEUE queued + refused_queued = DECODE offered + refused + discarded + QUEUE waiting |
 //! | DECODE offered = exact + interrogator + address + broken + unjudged = TRACKER offered |
 //! | TRACKER offered = born + updated + duplicate + unknown_address + no_address + no_place + broken + not_tracked |
 //! | STORE saved + unchanged + failed = saves asked for |
@@ -49,6 +50,8 @@ pub struct DecodeCounters {
     pub address: u32,
     pub broken: u32,
     pub unjudged: u32,
+    /// Refused by core 1, taken for raw outputs alone; not in `offered`.
+    pub refused: u32,
     /// Taken while reception is off: in CONFIGURATION, or by `RX_ENABLE=0`.
     pub discarded: u32,
 }
@@ -82,7 +85,7 @@ pub struct Stats<'a> {
     pub clock: crate::clock::Status<'a>,
 }
 
-/// Bytes of the longest line: DEMOD, 21 counters of up to ten digits and their names.
+/// Bytes of the longest line: DEMOD, 24 counters of up to ten digits and their names.
 pub const MAX_LINE: usize = 640;
 
 /// One line without its end.
@@ -174,6 +177,8 @@ impl Stats<'_> {
                 ("offered", value(&self.queue.offered)),
                 ("queued", value(&self.queue.queued)),
                 ("dropped", value(&self.queue.dropped)),
+                ("refused_queued", value(&self.queue.refused_queued)),
+                ("refused_dropped", value(&self.queue.refused_dropped)),
                 ("waiting", self.queue_waiting as u32),
             ],
         ));
@@ -187,6 +192,7 @@ impl Stats<'_> {
                 ("address", decode.address),
                 ("broken", decode.broken),
                 ("unjudged", decode.unjudged),
+                ("refused", decode.refused),
                 ("discarded", decode.discarded),
             ],
         ));

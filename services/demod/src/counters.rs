@@ -103,9 +103,13 @@ stages: {
     accepted_repaired,
     /// Accepted: address parity of an address heard lately, one bit repaired.
     accepted_address_repaired,
+    /// Of the refused: handed on, because raw outputs ask for them.
+    handed_on,
+    /// Of the refused: asked for, but too many.
+    withheld,
     /// Of `accepted_exact` and `accepted_interrogator`: found without a preamble.
     headless,
-    /// Of the accepted: level unknown and arrival by the first sampler alone, because the demodulator was late.
+    /// Of those given on: level unknown and arrival by the first sampler alone, because the demodulator was late.
     unmeasured,
 }
 trials: {

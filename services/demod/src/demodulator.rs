@@ -5,6 +5,7 @@
 //!        tried already, or inside an accepted frame ──────────────► superseded
 //!        too many mismatches with a preamble at every phase ──────► rejected_by_score
 //!        tried at the phase and its neighbours, see `trial` ──────► one outcome; a RawFrame ends the word
+//!   refused, but with a parity ─ asked for, and not too many? ─► handed on as a RawFrame that was not accepted
 //!   strong bits began three words ago and no preamble was tried there ─ `headless` ─► no_start, or a RawFrame
 //! ```
 //! A refused candidate blocks nothing: a stronger frame that starts inside a weaker one is tried when its word comes. Behind an accepted frame the walk goes on
@@ -50,13 +51,19 @@ const HASTY_WORDS: u64 = 64;
 /// Words before strong bits began in which their preamble may stand, tried.
 const TRIED_WITHIN: u32 = 8;
 
-/// A frame whose parity fits, and when it came.
+/// Words (of 4 us) a refused frame stands for: in the long run 2 000 a second are handed on. Measuring them is then 6 % of the core, and accepted ones, of which
+/// the channel carries 8 333, keep the queue.
+const REFUSED_GAP_WORDS: u64 = 125;
+/// Refused frames that may follow one another at once.
+const REFUSED_BURST: u64 = 16;
+
+/// A frame, and when it came. Its parity fits, unless refused frames were asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawFrame {
     /// The bits, repaired.
     pub frame: Frame,
-    /// Which bits were repaired: [`RawFrame::received`] takes them back.
-    pub flips: Flips,
+    /// Which bits were repaired: [`RawFrame::received`] takes them back. `None`: refused.
+    pub flips: Option<Flips>,
     /// Tick (120 MHz) of the leading edge of the preamble's first pulse, from the first capture sample, rounded down.
     pub arrival: u64,
     /// The rest of the arrival, in 1/256 of a tick.
@@ -67,7 +74,27 @@ pub struct RawFrame {
     pub level: Option<i16>,
 }
 
+/// The queue between the cores holds 127 of them.
+const _: () = assert!(size_of::<RawFrame>() == 32);
+
 impl RawFrame {
+    /// Whether the parity vouches for it. A refused one is good for raw outputs alone.
+    pub fn is_accepted(&self) -> bool {
+        self.flips.is_some()
+    }
+
+    /// A frame of which only the preamble's first sample is known.
+    fn coarse(frame: Frame, flips: Option<Flips>, first: u64) -> Self {
+        Self {
+            frame,
+            flips,
+            arrival: ticks(first),
+            arrival_parts: 0,
+            arrival_sigma: COARSE_SIGMA,
+            level: None,
+        }
+    }
+
     /// The bits as received, before repair.
     pub fn received(&self) -> Frame {
         let mut bytes = [0; LONG_BYTES];
@@ -75,14 +102,14 @@ impl RawFrame {
         for (to, from) in bytes.iter_mut().zip(sent) {
             *to = *from;
         }
-        self.flips.apply(&mut bytes);
+        self.flips.unwrap_or_default().apply(&mut bytes);
         // DF is never flipped, so the length still fits.
         Frame::from_bytes(&bytes[..sent.len()]).unwrap_or(self.frame)
     }
 
     /// How many bits were repaired.
     pub fn repaired(&self) -> u8 {
-        self.flips.count()
+        self.flips.unwrap_or_default().count()
     }
 }
 
@@ -94,6 +121,12 @@ pub struct Demodulator {
     free_from: u64,
     /// First sample of the frame accepted last.
     accepted_at: u64,
+    /// Whether refused frames are handed on, too.
+    tells_refused: bool,
+    /// One of the words just looked at, and its first sample.
+    refused: Option<(RawFrame, u64)>,
+    /// The word up to which the refused frames handed on have used up their share.
+    refused_until: u64,
     heard: Heard,
     gate: Gate,
     /// Where strong bits began, the last word that had them, and the last word at which a preamble was tried.
@@ -114,6 +147,9 @@ impl Demodulator {
             next: 0,
             free_from: 0,
             accepted_at: 0,
+            tells_refused: false,
+            refused: None,
+            refused_until: 0,
             heard: Heard::new(),
             gate: Gate::new(),
             strong_since: 0,
@@ -131,7 +167,12 @@ impl Demodulator {
         self.floor_cdbm = floor_cdbm;
     }
 
-    /// Works off the rings up to `written` words since the start of capture, and gives each accepted frame to `sink`. `newest` tells how many words there are by
+    /// Whether frames whose parity does not fit are wanted, too: as many as there is time for.
+    pub fn tell_refused(&mut self, tells: bool) {
+        self.tells_refused = tells;
+    }
+
+    /// Works off the rings up to `written` words since the start of capture, and gives each frame to `sink`. `newest` tells how many words there are by
     /// then: a long backlog takes its time, in which the smaller rings go on.
     #[inline]
     pub fn run(
@@ -153,8 +194,13 @@ impl Demodulator {
         self.conversions.follow(2 * now);
         let ring = rings.samples;
         while let Some(pairs) = self.find(ring, written, counters) {
-            if let Some(mut frame) = self.examine(ring, pairs, counters) {
-                self.measure(rings, newest(), &mut frame, counters);
+            let accepted = self.examine(ring, pairs, counters);
+            if let Some((mut frame, first)) = self.refused.take() {
+                self.measure(rings, first, newest(), &mut frame, counters);
+                sink(frame);
+            }
+            if let Some(mut frame) = accepted {
+                self.measure(rings, self.accepted_at, newest(), &mut frame, counters);
                 sink(frame);
             }
         }
@@ -263,14 +309,32 @@ impl Demodulator {
             rest = from_phase(rest, sample + 2);
             add(&counters.superseded, u32::from(others != rest));
             count(tried.outcome, counters);
+            let first = (start + u64::from(sample)).saturating_add_signed(i64::from(tried.phase));
             if tried.outcome.is_accepted() {
-                let first =
-                    (start + u64::from(sample)).saturating_add_signed(i64::from(tried.phase));
                 add(&counters.superseded, ones(rest));
                 return self.accept(first, &tried);
             }
+            if self.tells_refused && tried.outcome.has_parity() {
+                self.refuse(at, first, &tried, counters);
+            }
         }
         None
+    }
+
+    /// Keeps a refused frame for the sink, unless there were too many.
+    #[inline(never)]
+    fn refuse(&mut self, word: u64, first: u64, tried: &Tried, counters: &Counters) {
+        let is_too_soon = self.refused_until > word + REFUSED_BURST * REFUSED_GAP_WORDS;
+        if self.refused.is_some() || is_too_soon {
+            add(&counters.withheld, 1);
+            return;
+        }
+        let Ok(frame) = Frame::from_bytes(received(&tried.bytes)) else {
+            return;
+        };
+        add(&counters.handed_on, 1);
+        self.refused_until = self.refused_until.max(word) + REFUSED_GAP_WORDS;
+        self.refused = Some((RawFrame::coarse(frame, None, first), first));
     }
 
     /// Searches where strong bits began a few words ago, if no preamble was tried there.
@@ -340,20 +404,20 @@ impl Demodulator {
         let samples = u64::from(PREAMBLE_SAMPLES + BIT_SAMPLES * bits);
         self.free_from = first + samples - TAIL_SAMPLES;
         self.accepted_at = first;
-        Some(RawFrame {
-            frame,
-            flips: tried.flips,
-            arrival: ticks(first),
-            arrival_parts: 0,
-            arrival_sigma: COARSE_SIGMA,
-            level: None,
-        })
+        Some(RawFrame::coarse(frame, Some(tried.flips), first))
     }
 
-    /// Adds what the other two rings know of the frame just accepted, unless that is too long ago.
+    /// Adds what the other two rings know of a frame just found, whose preamble's first sample is `first`, unless that is too long ago.
     #[inline(never)]
-    fn measure(&self, rings: Rings, written: u64, frame: &mut RawFrame, counters: &Counters) {
-        let first_word = self.accepted_at / u64::from(SAMPLES_PER_WORD);
+    fn measure(
+        &self,
+        rings: Rings,
+        first: u64,
+        written: u64,
+        frame: &mut RawFrame,
+        counters: &Counters,
+    ) {
+        let first_word = first / u64::from(SAMPLES_PER_WORD);
         if written.saturating_sub(first_word) > MOST_MEASURED_AGE {
             add(&counters.unmeasured, 1);
             return;

@@ -54,24 +54,33 @@ const fn syndromes() -> [u32; LONG_BITS] {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flips {
     bits: [u8; 2],
-    count: u8,
+    count: Count,
+}
+
+/// A count as an enum leaves room for `Option<Flips>` in its three bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Count {
+    #[default]
+    None = 0,
+    One = 1,
+    Two = 2,
 }
 
 impl Flips {
     /// No bit was flipped.
     pub const NONE: Self = Self {
         bits: [0; 2],
-        count: 0,
+        count: Count::None,
     };
 
     /// How many.
     pub const fn count(self) -> u8 {
-        self.count
+        self.count as u8
     }
 
     /// Flips them in the bytes of a frame: repairs it, or takes the repair back.
     pub fn apply(self, bytes: &mut [u8]) {
-        for &bit in self.bits.iter().take(usize::from(self.count)) {
+        for &bit in self.bits.iter().take(usize::from(self.count())) {
             if let Some(byte) = bytes.get_mut(usize::from(bit >> 3)) {
                 *byte ^= 0x80 >> (bit & 7);
             }
@@ -164,7 +173,7 @@ impl Weakest {
         let bit = |index: usize| self.bits.get(index).copied().unwrap_or(0);
         Flips {
             bits: [bit(a), b.map_or(0, bit)],
-            count: if b.is_some() { 2 } else { 1 },
+            count: if b.is_some() { Count::Two } else { Count::One },
         }
     }
 }

@@ -72,6 +72,11 @@ impl Outcome {
         self >= Outcome::RepairedAddress
     }
 
+    /// Whether bits of a format that exists were demodulated to the end.
+    pub(crate) fn has_parity(self) -> bool {
+        self >= Outcome::BadParity
+    }
+
     /// Whether other bits than those demodulated could still be a frame.
     fn may_be_repaired(self) -> bool {
         matches!(
