@@ -10,7 +10,7 @@
 use core::sync::atomic::Ordering;
 use demod::{Calibration, LEVEL_WORDS, LevelRing, SampleRing};
 use drivers::trigger_level::{DEFAULT_MV, FULL_SCALE_MV, TriggerLevel};
-use hal::board::TriggerLevelPwm;
+use hal::board::{TRIGGER_LEVEL_ADC, TRIGGER_LEVEL_LOW_ADC, TriggerLevelPwm};
 use hal::level_converter::LevelConverter;
 use settings::{Settings, choices::TriggerMode};
 use trigger::{Input, Law, NoiseFloor, Observed, SAMPLES, Steering};
@@ -19,8 +19,6 @@ use trigger::{Input, Law, NoiseFloor, Observed, SAMPLES, Steering};
 const WORDS: u32 = 64;
 /// Looks a step of the steering: four steps a second.
 const LOOKS_A_STEP: u32 = 5;
-/// ADC channel of TRIGGER_LEVEL_ADC: GPIO 27.
-const TRIGGER_CHANNEL: u8 = 1;
 /// Lowest and highest level of LEARN until `lo` says otherwise, mV: 5 dB to both sides of where the model's bias is.
 const LEARN_MV: (u16, u16) = (1200, 1370);
 
@@ -139,8 +137,19 @@ impl Air {
 
     /// The trigger level as it stands at the comparator, mV.
     pub fn read_mv(&mut self) -> u16 {
-        let code = u32::from(self.converter.read(TRIGGER_CHANNEL));
-        (code * u32::from(FULL_SCALE_MV) / 4096) as u16
+        mv_of(self.converter.read(TRIGGER_LEVEL_ADC))
+    }
+
+    /// The low trigger level as it stands, mV, on a board that has one.
+    pub fn read_low_mv(&mut self) -> Option<u16> {
+        TRIGGER_LEVEL_LOW_ADC.map(|channel| mv_of(self.converter.read(channel)))
+    }
+
+    /// The detector's output, mV: the mean over the ring, 4.7 ms.
+    pub fn rssi_mv(&self) -> u16 {
+        let codes = self.levels.words.iter();
+        let sum: u32 = codes.map(|word| word.load(Ordering::Relaxed) & 0xFFF).sum();
+        mv_of((sum / LEVEL_WORDS as u32) as u16)
     }
 
     /// The noise floor at the antenna, 1/100 dBm.
@@ -149,4 +158,9 @@ impl Air {
             .code()
             .map(|code| Calibration::ADSBEE_1090.of_code(code))
     }
+}
+
+/// What a code of the converter is; its reference is the PWM's supply, so that the supply's own error is in neither.
+fn mv_of(code: u16) -> u16 {
+    (u32::from(code) * u32::from(FULL_SCALE_MV) / 4096) as u16
 }

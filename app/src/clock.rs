@@ -193,6 +193,14 @@ impl Clock {
         }
     }
 
+    /// Whole sentences, those refused or broken off, and pulses since the start; on a board with a connector.
+    pub fn heard(&self) -> Option<(u32, u32, u32)> {
+        self.wires.as_ref()?;
+        let lines = self.reader.counters();
+        let bad = lines.bad_checksum.wrapping_add(lines.broken_off);
+        Some((lines.good, bad, self.timebase.counters().offered))
+    }
+
     /// What `AT+GNSS?` tells.
     pub fn status(&self) -> Status<'_> {
         Status {

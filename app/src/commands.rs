@@ -76,7 +76,7 @@ impl Device for Receiver {
     }
 
     fn trigger_levels(&mut self) -> Result<(Option<u16>, u16), Failure> {
-        Ok((None, self.air.read_mv()))
+        Ok((self.air.read_low_mv(), self.air.read_mv()))
     }
 
     fn usb_drive_allowed(&mut self) -> &mut bool {

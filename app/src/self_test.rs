@@ -6,12 +6,15 @@
 //! | `EEPROM` | reads a page that is the self-test's own; writes it where it does not hold its pattern, and reads it back | it holds the pattern |
 //! | `SETTINGS` | loads the settings | the memory answers; whether there are any is told |
 //! | `RX_GAIN` | sets another gain, reads it back, sets the one before | both read back |
+//! | `RSSI` | the mean of 2048 conversions of the detector's output | 50 to 3250 mV: neither end of the converter |
+//! | `TRIGGER_LEVEL`, `TRIGGER_LEVEL_LOW` | reads the level at the comparator; waits for its RC if it is off | within 40 mV of what is set |
+//! | `GNSS` | tells sentences and pulses seen since the start | unless what came holds no whole sentence; nothing attached is no failure |
 //! | `CAPTURE` | counts blocks of samples for 12.8 ms; only while reception is on | 250 000 words a second within 2 % |
 //! | `CLOCK_SYS`, `CLOCK_USB` | the frequency counter, against the crystal | 120 000 and 48 000 kHz within 0.1 % |
 //! | `STACK_0`, `STACK_1` | bytes of each core's stack that were never used | enough is left |
 //!
-//! A check of a part that the board does not have is absent. What has no line is not tested: the analogue way (levels, detector), GNSS and the ESP32 are
-//! other parts' matter. Takes 60 ms, in which core 0 does nothing else; core 1 and the ports' DMA go on.
+//! A check of a part that the board does not have is absent. What has no line is not tested: that a pulse at the antenna
+//! reaches the comparator, and the ESP32. Takes 60 ms, 60 more where a level is off, in which core 0 does nothing else; core 1 and the ports' DMA go on.
 
 use crate::hardware::Refused;
 use crate::receiver::Receiver;
@@ -24,12 +27,18 @@ use hal::clocks::{Clock, measured_khz};
 use hal::{boot, stack, timer};
 
 /// Checks of the board with the most parts.
-const MOST: usize = 12;
+const MOST: usize = 14;
 /// Bytes of a value.
 const VALUE: usize = 64;
 /// The capture is watched for so many blocks of 32 words, 128 us each.
 const BLOCKS: u32 = 100;
 const BLOCK_US: u32 = 128;
+/// A detector's output, mV: this far from both ends of the converter, where an open or a shorted input reads.
+const RSSI_MV: (u16, u16) = (50, 3250);
+/// A level may read so far off what is set, mV: the converter's errors of offset and linearity (RP2040 datasheet, 4.9.3; erratum E11), 50 codes in all.
+const LEVEL_OFF_MV: u16 = 40;
+/// Six time constants of a level's RC (10 ms), after which a step over the full scale is 8 mV off.
+const LEVEL_SETTLES_US: u64 = 60_000;
 /// Bytes of stack that shall never have been used.
 const STACK_RESERVE: u32 = 1024;
 /// What the self-test's page holds: each byte another, so that a line that sticks shows.
@@ -70,7 +79,10 @@ pub fn run(receiver: &mut Receiver, receiving: bool) -> Checks {
         add(&mut checks, "EEPROM", found.is_ok(), format_args!("{text}"));
     }
     settings(receiver, &mut checks);
+    rssi(receiver, &mut checks);
+    trigger_levels(receiver, &mut checks);
     rx_gain(receiver, &mut checks);
+    gnss(receiver, &mut checks);
     if receiving {
         capture(receiver, &mut checks);
     }
@@ -167,6 +179,48 @@ fn settings(receiver: &mut Receiver, checks: &mut Checks) {
             false,
             format_args!("{}", trouble.reason()),
         ),
+    }
+}
+
+fn rssi(receiver: &Receiver, checks: &mut Checks) {
+    let mv = receiver.air.rssi_mv();
+    let (least, most) = RSSI_MV;
+    let possible = (least..=most).contains(&mv);
+    add(checks, "RSSI", possible, format_args!("{mv} mV"));
+}
+
+/// A level that was set just now is still on its way: it gets the time for it.
+fn trigger_levels(receiver: &mut Receiver, checks: &mut Checks) {
+    let air = &mut receiver.air;
+    let (low_set, set) = air.levels_mv();
+    let start_us = timer::now_us();
+    let read = loop {
+        let read = (air.read_mv(), air.read_low_mv());
+        let near = is_near(read.0, set) && read.1.is_none_or(|low| is_near(low, low_set));
+        if near || timer::now_us() - start_us >= LEVEL_SETTLES_US {
+            break read;
+        }
+    };
+    let levels = [
+        ("TRIGGER_LEVEL", set, Some(read.0)),
+        ("TRIGGER_LEVEL_LOW", low_set, read.1),
+    ];
+    for (name, set, read) in levels {
+        if let Some(read) = read {
+            let value = format_args!("{read} mV, set {set} mV");
+            add(checks, name, is_near(read, set), value);
+        }
+    }
+}
+
+fn is_near(read_mv: u16, set_mv: u16) -> bool {
+    read_mv.abs_diff(set_mv) <= LEVEL_OFF_MV
+}
+
+fn gnss(receiver: &Receiver, checks: &mut Checks) {
+    if let Some((good, bad, pulses)) = receiver.clock.heard() {
+        let value = format_args!("{good} sentences, {bad} bad, {pulses} pulses");
+        add(checks, "GNSS", good > 0 || bad == 0, value);
     }
 }
 

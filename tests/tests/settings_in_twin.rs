@@ -40,11 +40,22 @@ fn the_self_test_passes_on_a_board_that_works_and_writes_its_page_once() {
                     .iter()
                     .any(|l| l.starts_with(&format!("{name} PASS ")))
             };
-            for name in ["FLASH", "SETTINGS", "CAPTURE", "CLOCK_SYS", "CLOCK_USB"] {
+            for name in [
+                "FLASH",
+                "SETTINGS",
+                "RSSI",
+                "TRIGGER_LEVEL",
+                "CAPTURE",
+                "CLOCK_SYS",
+                "CLOCK_USB",
+            ] {
                 assert!(has(name), "{}: no {name} in {said}", kind.name);
             }
             assert_eq!(has("EEPROM"), kind.i2c.is_some(), "{said}");
             assert_eq!(has("RX_GAIN"), kind.name == "adsbee_1090_e", "{said}");
+            let is_e = kind.name == "adsbee_1090_e";
+            assert_eq!(has("TRIGGER_LEVEL_LOW"), is_e, "{said}");
+            assert_eq!(has("GNSS"), kind.gnss.is_some(), "{said}");
             if let Some(eeprom) = board.eeprom() {
                 assert_eq!(eeprom.wear(last_page), 1, "test {n}");
             }

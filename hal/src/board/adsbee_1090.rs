@@ -34,6 +34,10 @@ pub const NAME: [u8; 16] = *b"adsbee_1090\0\0\0\0\0";
 pub const HAS_EEPROM: bool = true;
 /// Whether the receive gain's potentiometer is fitted.
 pub const HAS_POTENTIOMETER: bool = false;
+/// ADC channel of the trigger level.
+pub const TRIGGER_LEVEL_ADC: u8 = 1;
+/// ADC channel of the low trigger level: there is none.
+pub const TRIGGER_LEVEL_LOW_ADC: Option<u8> = None;
 
 /// GPIO of GNSS_PPS where the board has a GNSS connector: the counters' jump pin.
 pub const GNSS_PPS_GPIO: Option<u8> = Some(26);

@@ -12,8 +12,7 @@
 //! | 22 | free | nobody | – |
 //! | 24 | TRIGGER_LEVEL_HIGH, PWM through an RC | `drivers::trigger_level` | PWM4 A |
 //! | 25 | TRIGGER_LEVEL_LOW, PWM through an RC | `drivers::trigger_level` | PWM4 B |
-//! | 26 | read-back of the high level (ADC0) | nobody yet | – |
-//! | 27, 28 | read-back of the low level (ADC1), RSSI_ADC (ADC2) | `level_converter` | analog, nothing digital |
+//! | 26, 27, 28 | read-back of the high and the low level (ADC0, ADC1), RSSI_ADC (ADC2) | `level_converter` | analog, nothing digital |
 //!
 //! The comparator takes the high level (`TL_SET` sets the threshold from `hi`: a ruling).
 //!
@@ -21,7 +20,9 @@
 
 use super::Pins;
 use rp2040_hal::gpio::bank0::{Gpio24, Gpio25, Gpio26};
-use rp2040_hal::gpio::{self, FunctionPio0, FunctionPwm, Pin, PinState, PullDown, PullNone};
+use rp2040_hal::gpio::{
+    self, FunctionNull, FunctionPio0, FunctionPwm, Pin, PinState, PullDown, PullNone,
+};
 use rp2040_hal::pwm::{A, B, Channel, FreeRunning, Pwm4, Slice, Slices};
 
 /// The board's name, as an image's header has it: ASCII, zero-padded.
@@ -31,6 +32,10 @@ pub const NAME: [u8; 16] = *b"adsbee_1090_e\0\0\0";
 pub const HAS_EEPROM: bool = true;
 /// Whether the receive gain's potentiometer is fitted.
 pub const HAS_POTENTIOMETER: bool = true;
+/// ADC channel of the high trigger level.
+pub const TRIGGER_LEVEL_ADC: u8 = 0;
+/// ADC channel of the low trigger level.
+pub const TRIGGER_LEVEL_LOW_ADC: Option<u8> = Some(1);
 
 /// GPIO of GNSS_PPS: no connector.
 pub const GNSS_PPS_GPIO: Option<u8> = None;
@@ -48,6 +53,8 @@ pub type TriggerLevelLowPwm = Channel<Slice<Pwm4, FreeRunning>, B>;
 
 /// Gives every pin in use its function.
 pub(crate) fn pins(pins: gpio::Pins) -> Pins {
+    // Analog; nobody holds it, since no other board has a third.
+    let _: Pin<Gpio26, FunctionNull, PullNone> = pins.gpio26.reconfigure();
     Pins {
         gnss: None,
         comms_tx: pins.gpio4.reconfigure(),

@@ -18,7 +18,7 @@
 //! | 20 | BOOT_CONFIG (free pin), pulled up | bootloader, app | SIO in |
 //! | 21-24 | free | nobody | – |
 //! | 26 | TRIGGER_LEVEL, PWM through an RC | `drivers::trigger_level` | PWM5 A |
-//! | 27, 28 | TRIGGER_LEVEL_ADC (ADC1), RSSI_ADC (ADC2) | nobody yet | – |
+//! | 27, 28 | TRIGGER_LEVEL_ADC (ADC1), RSSI_ADC (ADC2) | `level_converter` | analog, nothing digital |
 //!
 //! Source: the hardware facts in the project's ADSBee reference notes. Pins that nobody uses stay as reset leaves them.
 
@@ -34,6 +34,10 @@ pub const NAME: [u8; 16] = *b"adsbee_1090u\0\0\0\0";
 pub const HAS_EEPROM: bool = false;
 /// Whether the receive gain's potentiometer is fitted.
 pub const HAS_POTENTIOMETER: bool = false;
+/// ADC channel of the trigger level.
+pub const TRIGGER_LEVEL_ADC: u8 = 1;
+/// ADC channel of the low trigger level: there is none.
+pub const TRIGGER_LEVEL_LOW_ADC: Option<u8> = None;
 
 /// GPIO of GNSS_PPS where the board has a GNSS connector: the counters' jump pin.
 pub const GNSS_PPS_GPIO: Option<u8> = Some(2);
