@@ -46,7 +46,9 @@ fn replayed(engine: &str) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// Two lines of `--out hex` that tell the same frame.
+/// Two lines of `--out hex` that tell the same frame, the device's first.
+///
+/// A frame that core 1 came to more than 2 ms late has a coarse stamp and no level (`docs/reception.md`); the native engine knows no lateness.
 fn same_frame(one: &str, other: &str) -> bool {
     const COUNT_S: f64 = 1.0 / 12e6;
     let fields = |line: &str| line.split(',').map(str::to_string).collect::<Vec<_>>();
@@ -58,7 +60,13 @@ fn same_frame(one: &str, other: &str) -> bool {
             (Ok(one), Ok(other)) => (one - other).abs() <= most,
             _ => one[column] == other[column],
         };
-    one[1] == other[1] && one[3] == other[3] && within(0, 1.1 * COUNT_S) && within(2, 1.0)
+    let late = one[2].is_empty();
+    let measured_alike = if late {
+        within(0, 3.1 * COUNT_S)
+    } else {
+        within(0, 1.1 * COUNT_S) && within(2, 1.0)
+    };
+    one[1] == other[1] && one[3] == other[3] && measured_alike
 }
 
 #[test]
@@ -78,6 +86,9 @@ fn both_engines_print_the_same_frames_and_at_least_what_dump1090_finds() {
         native.lines().count()
     );
     assert_eq!(twin.lines().count(), native.lines().count());
+    // Out of the silence before the recording the gate stands wide open, and core 1 is late for 20 ms.
+    let late = twin.lines().filter(|line| line.contains(",,")).count();
+    assert!(late < 40, "{late} frames without a level");
     let frames: Vec<&str> = twin
         .lines()
         .map(|l| l.split(',').nth(1).expect("a hex column"))

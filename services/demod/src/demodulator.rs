@@ -45,9 +45,9 @@ const TAIL_SAMPLES: u64 = 96;
 /// Words behind which a frame is no longer measured, 2 ms: a core that is so late has no time for it, and the rings of second sampler and converter, of 955 and 1163
 /// words, are far from their end.
 const MOST_MEASURED_AGE: u64 = 500;
-/// Words from the start of an accepted frame within which candidates are tried in haste, 256 us: two frames. Near the channel's limit that is always so; what is
+/// Words from the start of an accepted frame within which candidates are tried in haste, 1 ms: eight frames. Near the channel's limit that is always so; what is
 /// found then follows from the samples alone, as everywhere.
-const HASTY_WORDS: u64 = 64;
+const HASTY_WORDS: u64 = 256;
 /// Words before strong bits began in which their preamble may stand, tried.
 const TRIED_WITHIN: u32 = 8;
 

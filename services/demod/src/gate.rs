@@ -163,9 +163,9 @@ impl Gate {
         pairs.phases(self.least())
     }
 
-    /// Whether bits have seemed to stand everywhere for a while: the limit is two places up.
+    /// Whether bits have seemed to stand everywhere for a while: the limit is a place up.
     pub(crate) fn is_flooded(&self) -> bool {
-        self.limit >= (HIGH + 2) << 8
+        self.limit >= (HIGH + 1) << 8
     }
 
     /// Moves the threshold; to be called once every [`STEER_WORDS`] words of the stream.
