@@ -86,9 +86,9 @@ fn both_engines_print_the_same_frames_and_at_least_what_dump1090_finds() {
         native.lines().count()
     );
     assert_eq!(twin.lines().count(), native.lines().count());
-    // Out of the silence before the recording the gate stands wide open, and core 1 is late for 20 ms.
+    // Short frames faster than core 1 can take them, for a few milliseconds.
     let late = twin.lines().filter(|line| line.contains(",,")).count();
-    assert!(late < 40, "{late} frames without a level");
+    assert!(late < 10, "{late} frames without a level");
     let frames: Vec<&str> = twin
         .lines()
         .map(|l| l.split(',').nth(1).expect("a hex column"))

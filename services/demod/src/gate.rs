@@ -38,7 +38,7 @@ const PASSING: u32 = 4;
 /// The threshold's moves a step too many or too few, in 1/256 of a place: up within a millisecond, down in tens of them.
 const UP: u32 = 24;
 const DOWN: u32 = 8;
-/// Steps passing from which on the noise has just come: the threshold jumps by eight places.
+/// Steps passing from which on the noise has just come: the threshold jumps by eight places, and its limit with it.
 const FLOODED: u32 = 16;
 const JUMP: u32 = 8 << 8;
 /// The threshold's limits, in places of 48, and where it starts. Noise and frames alone never lift it over the second, from which on weak frames would be lost.
@@ -177,7 +177,11 @@ impl Gate {
         } else {
             self.threshold - DOWN * (PASSING - self.passed)
         };
-        let limit = self.limit + LIMIT_MOVES * self.passed - LIMIT_MOVES * SUSTAINED;
+        let limit = if self.passed >= FLOODED {
+            self.limit + JUMP
+        } else {
+            self.limit + LIMIT_MOVES * self.passed - LIMIT_MOVES * SUSTAINED
+        };
         self.limit = limit.clamp(HIGH << 8, HIGHEST << 8);
         self.threshold = moved.clamp(LOWEST << 8, self.limit);
         self.passed = 0;
