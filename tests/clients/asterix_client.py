@@ -5,12 +5,9 @@ specification; quantities are in the specification's units, tables and numbers a
 record.
 """
 
-import json
-import sys
-
+import asterix_stream
 from asterix.base import Bits, RawDatablock
 from asterix.generated import Cat_021_2_1, Cat_023_1_2
-from asterix_stream import blocks
 
 EDITIONS = {21: Cat_021_2_1, 23: Cat_023_1_2}
 
@@ -46,7 +43,7 @@ def flatten(name, variation, into):
 
 def parsed_blocks(data):
     """libasterix reads a stream recursively, so it gets a block a call."""
-    for block in blocks(data):
+    for block in asterix_stream.blocks(data):
         parsed = RawDatablock.parse(Bits.from_bytes(block))
         if isinstance(parsed, ValueError):
             raise parsed
@@ -66,11 +63,5 @@ def records(data):
             yield told
 
 
-def main():
-    stream = open(sys.argv[1], "rb") if len(sys.argv) > 1 else sys.stdin.buffer
-    for told in records(stream.read()):
-        print(json.dumps(told))
-
-
 if __name__ == "__main__":
-    main()
+    asterix_stream.tell(records)

@@ -5,10 +5,8 @@ CAT021 edition 2.1 and CAT023 edition 1.2 in its newer definitions, so it is no 
 environment of its own.
 """
 
-import json
-import sys
-
 import asterix
+import asterix_stream
 
 # Item, its name of a value: the specification's key.
 KEYS = {
@@ -62,11 +60,5 @@ def records(data):
         yield told
 
 
-def main():
-    stream = open(sys.argv[1], "rb") if len(sys.argv) > 1 else sys.stdin.buffer
-    for told in records(stream.read()):
-        print(json.dumps(told))
-
-
 if __name__ == "__main__":
-    main()
+    asterix_stream.tell(records)

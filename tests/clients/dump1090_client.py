@@ -8,33 +8,17 @@ does not wait for an aircraft's second frame.
 """
 
 import json
-import socket
 import subprocess
 import sys
 import threading
 import time
 
+from loopback import connected, free_port
+
 INPUT = {"beast": "--net-bi-port", "raw": "--net-ri-port"}
 ALL_PORTS = ["--net-ri-port", "--net-ro-port", "--net-bi-port", "--net-bo-port", "--net-sbs-port", "--net-http-port"]
-# Seconds to start, and of silence after which all has come.
-START, SILENCE = 10.0, 3.0
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-def connected(port):
-    until = time.monotonic() + START
-    while True:
-        try:
-            return socket.create_connection(("127.0.0.1", port))
-        except ConnectionRefusedError:
-            if time.monotonic() > until:
-                raise
-            time.sleep(0.05)
+# Seconds of silence after which all has come.
+SILENCE = 3.0
 
 
 def frames(data, form):

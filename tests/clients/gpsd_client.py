@@ -9,28 +9,12 @@ import os
 import socket
 import subprocess
 import sys
-import time
 
-# Seconds to start, and of silence after which all has been told.
-START, SILENCE = 10.0, 2.0
+from loopback import START, connected, free_port
+
+# Seconds of silence after which all has been told.
+SILENCE = 2.0
 WATCH = b'?WATCH={"enable":true,"json":true};\n'
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-def connected(port):
-    until = time.monotonic() + START
-    while True:
-        try:
-            return socket.create_connection(("127.0.0.1", port))
-        except ConnectionRefusedError:
-            if time.monotonic() > until:
-                raise
-            time.sleep(0.05)
 
 
 def fixes(data):

@@ -9,9 +9,8 @@ import json
 import re
 import struct
 import subprocess
-import sys
 
-from asterix_stream import blocks
+import asterix_stream
 
 EDITIONS = {"asterix.i021_version": "Version 2.4", "asterix.i023_version": "Version 1.2"}
 PORT = 8600
@@ -32,7 +31,7 @@ def packet(data):
 
 def capture(data):
     head = struct.pack("<IHHiIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, LINK_IPV4)
-    return head + b"".join(map(packet, blocks(data)))
+    return head + b"".join(map(packet, asterix_stream.blocks(data)))
 
 
 def value(text):
@@ -77,11 +76,5 @@ def records(data):
         yield told
 
 
-def main():
-    stream = open(sys.argv[1], "rb") if len(sys.argv) > 1 else sys.stdin.buffer
-    for told in records(stream.read()):
-        print(json.dumps(told))
-
-
 if __name__ == "__main__":
-    main()
+    asterix_stream.tell(records)
