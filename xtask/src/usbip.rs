@@ -4,7 +4,7 @@
 //!   squitter usbip (twin) ◀─ TCP ─▶ QEMU: Debian's kernel, vhci-hcd, cdc-acm ─ /dev/ttyACM0 ─ AT+INFO, squitter update ─ exit code 0
 //! ```
 //! Needs Debian with `qemu-system-x86`, `busybox-static`, `usbip` and `dpkg`; its kernel is downloaded as a package and unpacked under the target folder, not
-//! installed. The guest lives in its initial RAM disk alone: busybox, usbip, `squitter`, their libraries, six modules. Some ten minutes, most of it
+//! installed. The guest lives in its initial RAM disk alone: busybox, usbip, `squitter`, their libraries, six modules. Two minutes on a quiet machine, most of it
 //! waiting; not part of CI.
 
 use crate::{fw, workspace};
