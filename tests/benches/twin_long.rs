@@ -59,7 +59,9 @@ fn run(hours: u64, minutes: u64, go_on: bool) -> Result<(), String> {
     }
     let mut frames = 0;
     if minutes > 0 {
-        let kept = bench.file("device");
+        let kept = bench
+            .file("device")
+            .map_err(|error| format!("target/bench: {error}"))?;
         let mut air = if go_on {
             OnTheAir::go_on(&tests::log(), &kept)?
         } else {

@@ -119,11 +119,11 @@ impl Bench {
         self.rows.push(row);
     }
 
-    /// `target/bench/<name>.<extension>`, for what a run leaves to the next.
-    pub fn file(&self, extension: &str) -> PathBuf {
-        root()
-            .join("target/bench")
-            .join(format!("{}.{extension}", self.name))
+    /// `target/bench/<name>.<extension>`, for what a run leaves to the next; the folder is there.
+    pub fn file(&self, extension: &str) -> std::io::Result<PathBuf> {
+        let folder = root().join("target/bench");
+        std::fs::create_dir_all(&folder)?;
+        Ok(folder.join(format!("{}.{extension}", self.name)))
     }
 
     /// Writes `target/bench/<name>.csv`, with `--save` also `docs/bench/<name>.txt`, and prints the result line, which is the last.

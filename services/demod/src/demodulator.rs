@@ -42,9 +42,9 @@ const PREAMBLE_SAMPLES: u32 = 64;
 const BIT_SAMPLES: u32 = 8;
 /// Samples before an accepted frame's end at which another may start: 12 µs, a preamble and four bits.
 const TAIL_SAMPLES: u64 = 96;
-/// Words behind which a frame is no longer measured, 2 ms: a core that is so late has no time for it, and the rings of second sampler and converter, of 955 and 1163
-/// words, are far from their end.
-const MOST_MEASURED_AGE: u64 = 500;
+/// Words behind which a frame is no longer measured, 2.8 ms: the rings of second sampler and converter hold 955 and 1163 of them, and a millisecond is left before what
+/// is measured is overwritten.
+const MOST_MEASURED_AGE: u64 = 700;
 /// Words from the start of an accepted frame within which candidates are tried in haste, 1 ms: eight frames. Near the channel's limit that is always so; what is
 /// found then follows from the samples alone, as everywhere.
 const HASTY_WORDS: u64 = 256;
