@@ -58,7 +58,7 @@ use hal::{Parts, sleep, stack, timer, watchdog};
 use hardware::Hardware;
 use heapless::spsc::Queue;
 use load::Load;
-use receiver::{AIRCRAFT, Receiver, SharedCounters};
+use receiver::{AIRCRAFT, Receiver, Shared};
 use report::{FrameTimes, Gnss};
 use reporter::Reporter;
 use settings::Stored;
@@ -85,9 +85,8 @@ static CORE1: TakeOnce<Option<Context>> = TakeOnce::new(None);
 static TRACKER: TakeOnce<Tracker<AIRCRAFT>> = TakeOnce::new(Tracker::new());
 /// The noise at the antenna, 1/100 dBm: core 0 measures, core 1 uses it.
 static FLOOR_CDBM: AtomicI32 = AtomicI32::new(Calibration::ADSBEE_1090.floor_cdbm as i32);
-/// Whether a port wants refused frames: core 0 knows, core 1 hands them on.
-static WANTS_REFUSED: AtomicBool = AtomicBool::new(false);
-static SHARED: SharedCounters = SharedCounters {
+static SHARED: Shared = Shared {
+    wants_refused: AtomicBool::new(false),
     capture: CaptureCounters::new(),
     demod: Counters::new(),
     queue: QueueCounters::new(),
@@ -155,7 +154,7 @@ fn start() -> Option<core::convert::Infallible> {
         demodulator: Demodulator::new(Calibration::ADSBEE_1090),
         demod_counters: &SHARED.demod,
         floor_cdbm: &FLOOR_CDBM,
-        wants_refused: &WANTS_REFUSED,
+        wants_refused: &SHARED.wants_refused,
         queue: producer,
         queue_counters: &SHARED.queue,
         idle_us: &SHARED.core1_idle_us,
@@ -229,7 +228,9 @@ fn start() -> Option<core::convert::Infallible> {
             if let Some(floor_cdbm) = receiver.look() {
                 FLOOR_CDBM.store(i32::from(floor_cdbm), Ordering::Relaxed);
             }
-            WANTS_REFUSED.store(receiver.wants_refused(), Ordering::Relaxed);
+            SHARED
+                .wants_refused
+                .store(receiver.wants_refused(), Ordering::Relaxed);
             led.beat(receiver.shows());
             next_beat_us = next_beat(now_us, capture_start_us);
             let stalled_ms = (now_us - block_seen_us) / 1000;

@@ -23,7 +23,7 @@ use crate::station::Station;
 use crate::stats::{DecodeCounters, Stats};
 use crate::store::{SettingsStore, Trouble};
 use boot_contract::hand_over::{Cause, HandOver};
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use demod::RawFrame;
 use drivers::pulse_capture::CaptureCounters;
 use hal::board::LED_GPIO;
@@ -49,8 +49,11 @@ const FRAMES_A_TURN: usize = 4;
 /// Aircraft whose second ends in one turn of the loop: about 0.1 ms of core 0. All four hundred at once let the queue of frames overflow.
 const AIRCRAFT_A_TURN: usize = 8;
 
-/// Counters that core 1 writes.
-pub struct SharedCounters {
+/// What the cores share beside the queue: counters that core 1 writes, and a wish of core 0. One static, because a small one of its own would stand between
+/// the rings, whose alignment makes it 8 KiB large.
+pub struct Shared {
+    /// Whether a port wants refused frames: core 1 hands them on.
+    pub wants_refused: AtomicBool,
     pub capture: CaptureCounters,
     pub demod: demod::Counters,
     pub queue: QueueCounters,
@@ -72,7 +75,7 @@ pub struct Receiver {
     pub clock: Clock,
     pub queue: Consumer<'static, RawFrame>,
     pub tracker: &'static mut Tracker<AIRCRAFT>,
-    pub shared: &'static SharedCounters,
+    pub shared: &'static Shared,
     pub decode: DecodeCounters,
     pub commands: u32,
     pub comms_received: u32,
@@ -154,6 +157,8 @@ impl Receiver {
     }
 
     /// Takes frames from the queue. Returns whether more wait; `heard` is called for each.
+    // A function of its own, so that `linker/app.x` can place it.
+    #[inline(never)]
     pub fn frames(&mut self, mut heard: impl FnMut()) -> bool {
         let now = self.now();
         for _ in 0..FRAMES_A_TURN {
@@ -227,6 +232,7 @@ impl Receiver {
     }
 
     /// Begins a second when it is time; goes on with the bursts. Returns whether there is more to send at once.
+    #[inline(never)]
     pub fn reports(&mut self) -> bool {
         if self.uptime_us() >= self.second_ends_us {
             self.begin_second();
@@ -245,6 +251,7 @@ impl Receiver {
         console | comms
     }
 
+    #[inline(never)]
     fn begin_second(&mut self) {
         let now_ms = self.uptime_us() / 1000;
         self.second = (now_ms / 1000) as u32;
@@ -259,6 +266,7 @@ impl Receiver {
         self.is_ending_second = true;
     }
 
+    #[inline(never)]
     fn begin_reports(&mut self) {
         self.log_second();
         let demodulated = self.shared.demod.snapshot().demodulated;

@@ -23,12 +23,12 @@ impl Station {
         settings: &'a Settings,
         moment: Moment,
     ) -> Context<'a> {
-        let set = settings.serial.as_str();
         Context {
             moment,
             second_began: self.second_began,
             gnss: &self.gnss,
-            source: if set.is_empty() { serial } else { set },
+            serial: &settings.serial,
+            own_serial: serial,
             firmware: version,
             unique_id: self.unique_id,
         }

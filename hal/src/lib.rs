@@ -16,6 +16,7 @@
 //! | [`usb`] | the console's CDC ACM port | USBCTRL |
 //! | [`watchdog`] | feeding, forced reset, scratch 2/3, reset source | WATCHDOG, PSM.WDSEL, VREG_AND_CHIP_RESET |
 //! | [`core1`] | starting the second core; waking the first | PSM, SIO FIFO |
+//! | `divide` | division of 32 bits, by the names the compiler calls | SIO divider |
 //! | [`clocks`] | what the clocks really run at | CLOCKS.FC0 |
 //! | [`stack`] | how deep the stacks have been | – |
 //! | [`sleep`] | WFI without a lost wake-up | NVIC |
@@ -33,6 +34,7 @@ pub mod boot;
 pub mod byte_ring;
 pub mod clocks;
 pub mod core1;
+mod divide;
 pub mod dma_ring;
 pub mod flash;
 mod hard_fault;

@@ -1,6 +1,7 @@
 """The PyPI package `adsbee` against CONSOLE: its own class on a pseudo-terminal whose other end is standard input and output.
 
-What it found goes to standard error, a JSON line a step. Its waits are stretched: the twin may be slower than a device.
+What it found goes to standard error, a JSON line a step. Its waits of some milliseconds last until the device has spoken and is silent again: the twin may be slower
+than a device.
 """
 
 import json
@@ -13,15 +14,29 @@ import tty
 
 import adsbee.at as at
 
-# Its 10 ms become 0.6 s.
-STRETCH = 60
+# Seconds: a reply comes at the latest after the first, and is over after the second without a byte.
+REPLY_S, SILENCE_S = 30, 1
 sleep = time.sleep
-at.time.sleep = lambda seconds: sleep(seconds * STRETCH if seconds < 0.1 else seconds)
+heard = threading.Event()
+
+
+def wait(seconds):
+    if seconds >= 0.1:
+        sleep(seconds)
+    elif heard.wait(REPLY_S):
+        while heard.is_set():
+            heard.clear()
+            heard.wait(SILENCE_S)
+
+
+at.time.sleep = wait
 
 
 def copy(source, target):
     while piece := os.read(source, 4096):
         os.write(target, piece)
+        if source == 0:
+            heard.set()
 
 
 def tell(step, found):

@@ -237,6 +237,25 @@ def judge_fix(folder, scene):
     return row
 
 
+def judge_adsbee(folder):
+    """What the ADSBee's own client found on CONSOLE is what stands there when its questions are typed; what is not there is an error to it."""
+    row = Row("adsbee")
+    typed = (folder / "adsbee.txt").read_text(encoding="ascii").splitlines()
+    steps = {step["step"]: step["found"] for step in understood(folder, "adsbee")}
+    row.messages = len(steps)
+    compare(row, "adsbee", {"protocol": [line for line in typed if line.startswith("+PROTOCOL=")]}, steps)
+    compare(row, "adsbee", {"save": ["OK"], "dump": ["OK"], "help": ["OK"], "ota": True}, steps)
+    for name, label in {
+        "part_code": "Part Code",
+        "rp2040_firmware_version": "RP2040 Firmware Version",
+        "esp32_firmware_version": "ESP32 Firmware Version",
+        "mac_address": "ESP32 Base MAC Address",
+    }.items():
+        told = [line.partition(": ")[2] for line in typed if line.strip().startswith(label + ": ")]
+        compare(row, "adsbee DEVICE_INFO", {name: told[0] if told else ""}, steps.get("info", {}))
+    return row
+
+
 def judge_receiver(folder, scene):
     """What GDL90, CAT023 and JSON say of the receiver itself, once the time is known."""
     row, place = Row("time and place"), scene.place
@@ -321,6 +340,7 @@ def main():
         lambda: judge_frames(folder, "dump1090-raw", hexd((folder / "hexd.bin").read_bytes())),
         lambda: judge_frames(folder, "dump1090-beast", beast((folder / "console.bin").read_bytes())),
         lambda: judge_fix(folder, scene),
+        lambda: judge_adsbee(folder),
         lambda: judge_receiver(folder, scene),
         lambda: judge_order(folder, "hexd", hexd, all_frames),
         lambda: judge_order(folder, "raw", raw, all_frames),

@@ -1,5 +1,6 @@
 //! What end-to-end tests and benchmarks share: where the images and the recordings are, and how a bench reports.
 
+pub mod adsbee_dialogue;
 pub mod boot_timing;
 pub mod clients;
 pub mod cpu_peer;

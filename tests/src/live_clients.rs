@@ -12,11 +12,13 @@
 //! | `truth.jsonl` | an aircraft's values from `ms` on, a line whenever they change |
 //! | `stats.txt` | `AT+STATS?` at the end |
 //! | `<client>.jsonl` | what a client understood of its protocol, a line a message |
+//! | `adsbee.txt` | what the same questions as the client `adsbee` asks give when typed |
 //!
 //! `tests/clients/judge.py` compares the last with the truth.
 //!
 //! All milliseconds are of the device's uptime: since its first sample.
 
+use crate::adsbee_dialogue;
 use crate::clients::Client;
 use mode_s::{Frame, Message};
 use serde_json::{Value, json};
@@ -175,6 +177,24 @@ pub fn record(folder: &Path, part_ms: u64, spacing_us: u64) -> Result<(), Failur
     }
     std::fs::write(folder.join("frames.txt"), list)?;
     std::fs::write(folder.join("truth.jsonl"), truth(&frames))?;
+    adsbee(folder)
+}
+
+/// Lets the client `adsbee` type at a device of its own, then types the same: what it found and what it should have.
+fn adsbee(folder: &Path) -> Result<(), Failure> {
+    let mut board = board(&gnss::Options::default())?;
+    board.console_read();
+    let steps = adsbee_dialogue::dialogue(&mut board)?;
+    let lines: String = steps.iter().map(|step| format!("{step}\n")).collect();
+    std::fs::write(folder.join("adsbee.jsonl"), lines)?;
+    board.console_read();
+    let mut typed = Vec::new();
+    for line in ["AT+PROTOCOL?", "AT+DEVICE_INFO?"] {
+        board.console_write(format!("{line}\r\n").as_bytes());
+        board.run_ms(50)?;
+        typed.extend(board.console_read());
+    }
+    std::fs::write(folder.join("adsbee.txt"), typed)?;
     Ok(())
 }
 

@@ -27,12 +27,25 @@ pub struct Context<'a> {
     pub second_began: FrameTimes,
     /// The GNSS receiver's fix.
     pub gnss: &'a Gnss,
-    /// Serial number in force.
-    pub source: &'a str,
+    /// Serial number of the settings; where it is empty the device's own is in force. Two fields and not one text, because a context is made for every frame.
+    pub serial: &'a settings::Text<20>,
+    /// The device's own.
+    pub own_serial: &'a str,
     /// `a.b.c.d (Mon D YYYY)`.
     pub firmware: &'a str,
     /// The flash's unique id.
     pub unique_id: u64,
+}
+
+impl<'a> Context<'a> {
+    /// Serial number in force.
+    pub fn source(&self) -> &'a str {
+        if self.serial.is_empty() {
+            self.own_serial
+        } else {
+            self.serial.as_str()
+        }
+    }
 }
 
 /// One port.
@@ -173,7 +186,7 @@ impl<O: Outlet> Reporter<O> {
 
     fn frame_as_json(&mut self, report: &FrameReport<'_>, context: &Context<'_>) {
         let mut out = [0; json::MAX_MESSAGE];
-        let made = json::raw(context.source, report, &context.moment, &mut out);
+        let made = json::raw(context.source(), report, &context.moment, &mut out);
         self.send(Kind::Frame, &out, made);
     }
 

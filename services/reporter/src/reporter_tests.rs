@@ -81,7 +81,8 @@ fn context(now_ms: u64) -> Context<'static> {
         moment: Moment::at(now_ms),
         second_began: FrameTimes::at(now_ms * 120_000),
         gnss: &GNSS,
-        source: "ID-1",
+        serial: &settings::Text::EMPTY,
+        own_serial: "ID-1",
         firmware: "1.0.0.0 (Jan 1 2026)",
         unique_id: 1,
     }

@@ -145,7 +145,7 @@ pub(crate) fn aircraft(
         Decoded::None => Ok(0),
         Decoded::AeroJson if !look.has(json::section::ADSB) => Ok(0),
         Decoded::Json | Decoded::AeroJson => {
-            json::aircraft(context.source, aircraft, moment, look.json, out)
+            json::aircraft(context.source(), aircraft, moment, look.json, out)
         }
         Decoded::Csbee => csbee::aircraft(aircraft, moment, out),
         Decoded::Csv => aero::aircraft(aircraft, moment, out),
@@ -200,10 +200,10 @@ pub(crate) fn each_second(
         (_, Decoded::Gdl90, 2) => gdl90::ownship(gnss, 0, out),
         (_, Decoded::Gdl90, 3) => gdl90::ownship_altitude(gnss, out),
         (_, Decoded::AeroJson, 0) if look.has(json::section::STATUS) => {
-            json::status(context.source, context.firmware, moment, out)
+            json::status(context.source(), context.firmware, moment, out)
         }
         (_, Decoded::AeroJson, 1) if look.has(json::section::GNSS) => {
-            json::gnss(context.source, gnss, moment, out)
+            json::gnss(context.source(), gnss, moment, out)
         }
         (_, Decoded::AeroJson, 0 | 1) => Ok(0),
         _ => return None,
@@ -218,7 +218,7 @@ pub(crate) fn statistics(
     statistics: &Statistics,
     mut tell: impl FnMut(&[u8], Result<usize, Full>),
 ) {
-    let Context { source, moment, .. } = context;
+    let (source, moment) = (context.source(), &context.moment);
     let mut out = [0; json::MAX_MESSAGE];
     let made = match system {
         SystemStatistics::None => Ok(0),
@@ -243,6 +243,6 @@ pub(crate) fn gnss(
 ) -> Result<usize, Full> {
     match protocol {
         GnssDecoded::None => Ok(0),
-        GnssDecoded::Json => json::gnss(context.source, context.gnss, &context.moment, out),
+        GnssDecoded::Json => json::gnss(context.source(), context.gnss, &context.moment, out),
     }
 }
