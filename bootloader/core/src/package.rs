@@ -18,16 +18,12 @@ pub const MAGIC: [u8; 8] = *b"SQTRPKG1";
 pub const PREFIX: usize = MAGIC.len() + 2 * LEN;
 
 /// The two headers at a package's start; `None` if it does not begin like one.
-pub fn headers(prefix: &[u8; PREFIX]) -> Option<[[u8; LEN]; 2]> {
+pub fn headers(prefix: &[u8; PREFIX]) -> Option<[&[u8; LEN]; 2]> {
     let (magic, headers) = prefix.split_at(MAGIC.len());
-    if magic != MAGIC {
-        return None;
+    match headers.as_chunks().0 {
+        [a, b] if magic == MAGIC => Some([a, b]),
+        _ => None,
     }
-    let mut out = [[0; LEN]; 2];
-    for (to, from) in out.iter_mut().zip(headers.chunks_exact(LEN)) {
-        to.copy_from_slice(from);
-    }
-    Some(out)
 }
 
 /// Where a slot's image lies in a package whose images have these lengths.

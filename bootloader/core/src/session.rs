@@ -96,6 +96,14 @@ struct Transfer<'a> {
     installed: bool,
 }
 
+impl<'a> Transfer<'a> {
+    /// Not inlined: what is built here would lie on the stack below the check of a signature.
+    #[inline(never)]
+    fn begin(&mut self, terms: Terms<'a>, target: SlotName, length: u32) {
+        self.update = Some(Update::new(terms, target, length));
+    }
+}
+
 /// The session.
 pub struct Session<'a> {
     terms: Terms<'a>,
@@ -309,12 +317,7 @@ impl<'a> Session<'a> {
 
     /// The verdicts, whatever is left of the verification done at once.
     fn verify_now(&mut self, machine: &mut impl Machine) -> Verified {
-        loop {
-            if let Some(verified) = self.verifier.verified() {
-                return verified;
-            }
-            self.verifier.step(&self.terms, machine.flash());
-        }
+        self.verifier.all(&self.terms, machine.flash())
     }
 
     /// Writes what must be logged, and decides.
@@ -337,9 +340,10 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Moves the transfer on by a byte, or by the time that passed.
+    /// Moves the transfer on by a byte, or by the time that passed. It stays where it is meanwhile: a signature is checked below here, and the stack
+    /// has no room for copies of it.
     fn pump(&mut self, machine: &mut impl Machine, byte: Option<u8>) {
-        let Some(mut transfer) = self.transfer.take() else {
+        let Some(transfer) = &mut self.transfer else {
             return;
         };
         let now_ms = machine.now_ms();
@@ -350,9 +354,9 @@ impl<'a> Session<'a> {
         let answer = match event {
             Event::Nothing => Ok(Answer::Nothing),
             Event::Begin(length) => {
-                let verified = self.verify_now(machine);
+                let verified = self.verifier.all(&self.terms, machine.flash());
                 let target = update_target(self.log.state(), &verified);
-                transfer.update = Some(Update::new(self.terms, target, length));
+                transfer.begin(self.terms, target, length);
                 Ok(Answer::Accept)
             }
             Event::Data(bytes) => match &mut transfer.update {
@@ -361,7 +365,7 @@ impl<'a> Session<'a> {
             }
             .map(|()| Answer::Accept)
             .map_err(UpdateError::reason),
-            Event::End => match transfer.update.take() {
+            Event::End => match &mut transfer.update {
                 Some(update) => update
                     .finish(machine.flash(), &mut self.log)
                     .map(|_| transfer.installed = true),
@@ -380,18 +384,21 @@ impl<'a> Session<'a> {
         while let Some(byte) = transfer.receiver.reply() {
             machine.send(transfer.port, &[byte]);
         }
+        let (port, installed) = (transfer.port, transfer.installed);
         match answer {
-            Ok(Answer::Nothing | Answer::Accept) => self.transfer = Some(transfer),
-            Ok(Answer::Over) => self.transferred(machine, transfer.port, transfer.installed),
+            Ok(Answer::Nothing | Answer::Accept) => {}
+            Ok(Answer::Over) => self.transferred(machine, port, installed),
             Err(reason) => {
+                self.transfer = None;
                 self.verifier = Verifier::new();
-                self.fail(machine, transfer.port, reason);
+                self.fail(machine, port, reason);
             }
         }
     }
 
     /// The sender has said good-bye.
     fn transferred(&mut self, machine: &mut impl Machine, port: Port, installed: bool) {
+        self.transfer = None;
         self.verifier = Verifier::new();
         if installed {
             self.locked = false;

@@ -15,7 +15,7 @@ use crate::package::{self, PREFIX};
 use crate::slot::{ImageCheck, Refusal, Terms};
 use boot_contract::boot_log::{Record, SlotName};
 use boot_contract::flash_map::{PAGE, SECTOR};
-use boot_contract::header::{Header, LEN};
+use boot_contract::header::Header;
 use boot_contract::log_store::{BootLog, LogError};
 use embedded_storage::nor_flash::NorFlash;
 
@@ -60,7 +60,6 @@ pub struct Update<'a> {
 
 /// After the prefix was accepted.
 struct Stage {
-    header_bytes: [u8; LEN],
     /// First byte of the image in the file, and the byte behind its last.
     image: (u32, u32),
     check: ImageCheck,
@@ -103,7 +102,8 @@ impl<'a> Update<'a> {
             if (self.position as usize) < PREFIX {
                 return Ok(());
             }
-            self.stage = Some(self.examine()?);
+            let (header, first) = self.examine()?;
+            self.begin_stage(&header, first);
             let header = self.target.slot().header;
             flash
                 .erase(header, header + SECTOR)
@@ -123,52 +123,58 @@ impl<'a> Update<'a> {
         stage.store(flash, &bytes[from as usize..to as usize])
     }
 
-    /// The whole prefix is there: is its package one for this device?
-    fn examine(&self) -> Result<Stage, UpdateError> {
+    /// The whole prefix is there: is its package one for this device? The target's header, and the first byte of its image in the file.
+    fn examine(&self) -> Result<(Header, u32), UpdateError> {
         let headers = package::headers(&self.prefix).ok_or(UpdateError::NoPackage)?;
-        let header_bytes = headers[self.target.index()];
-        let header = self
-            .terms
-            .check_header(self.target.slot(), &header_bytes)
-            .map_err(UpdateError::Refused)?;
+        let check = |slot: SlotName| {
+            let checked = self.terms.check_header(slot.slot(), headers[slot.index()]);
+            checked.map_err(UpdateError::Refused)
+        };
+        let header = check(self.target)?;
         // The other header only says where its image ends, but it too must be one of ours.
-        let other = self.target.other();
-        let other_header = self
-            .terms
-            .check_header(other.slot(), &headers[other.index()])
-            .map_err(UpdateError::Refused)?;
+        let other = check(self.target.other())?;
         let lengths = match self.target {
-            SlotName::A => [header.image_length, other_header.image_length],
-            SlotName::B => [other_header.image_length, header.image_length],
+            SlotName::A => [header.image_length, other.image_length],
+            SlotName::B => [other.image_length, header.image_length],
         };
         if package::length(lengths) != u64::from(self.file_length) {
             return Err(UpdateError::FileLength);
         }
         // Lengths passed the check: the sums stay far below 2^32.
-        let first = package::image_at(self.target, lengths) as u32;
-        Ok(Stage {
-            header_bytes,
+        Ok((header, package::image_at(self.target, lengths) as u32))
+    }
+
+    /// Not inlined, so that what is built here is not on the stack while a signature is checked.
+    #[inline(never)]
+    fn begin_stage(&mut self, header: &Header, first: u32) {
+        self.stage = Some(Stage {
             image: (first, first + header.image_length),
-            check: ImageCheck::new(header),
+            check: ImageCheck::new(*header),
             page: [0xFF; PAGE as usize],
             filled: 0,
             at: self.target.slot().image,
-        })
+        });
     }
 
-    /// All bytes came: the last checks, the header, the log.
+    /// All bytes came: the last checks, the header, the log. It is over then, good or not.
     pub fn finish<F: NorFlash>(
-        self,
+        &mut self,
         flash: &mut F,
         log: &mut BootLog,
     ) -> Result<Header, UpdateError> {
         if self.position != self.file_length {
             return Err(UpdateError::FileLength);
         }
-        let mut stage = self.stage.ok_or(UpdateError::NoPackage)?;
+        let headers = package::headers(&self.prefix).ok_or(UpdateError::NoPackage)?;
+        let stage = self.stage.as_mut().ok_or(UpdateError::NoPackage)?;
         stage.flush(flash)?;
-        let header = stage.check.verdict().map_err(UpdateError::Refused)?;
-        program(flash, self.target.slot().header, &stage.header_bytes)?;
+        let verdict = stage.check.clone().verdict();
+        let header = verdict.map_err(UpdateError::Refused)?;
+        program(
+            flash,
+            self.target.slot().header,
+            headers[self.target.index()],
+        )?;
         let record = Record::Pending {
             slot: self.target,
             image: header.image_id(),

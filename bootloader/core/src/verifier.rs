@@ -44,6 +44,16 @@ impl Verifier {
         }
     }
 
+    /// The verdicts, whatever is left done at once.
+    pub fn all<F: ReadNorFlash>(&mut self, terms: &Terms, flash: &mut F) -> Verified {
+        loop {
+            if let Some(verified) = self.verified() {
+                return verified;
+            }
+            self.step(terms, flash);
+        }
+    }
+
     /// One slice more.
     pub fn step<F: ReadNorFlash>(&mut self, terms: &Terms, flash: &mut F) {
         for name in SlotName::ALL {

@@ -111,7 +111,7 @@ impl Package {
         let headers = headers(prefix).ok_or("no update package: it does not begin like one")?;
         let mut lengths = [0; 2];
         for slot in SlotName::ALL {
-            let header = Header::decode(&headers[slot.index()]).map_err(|cause| {
+            let header = Header::decode(headers[slot.index()]).map_err(|cause| {
                 format!(
                     "slot {}: {}",
                     slot.letter(),
@@ -130,7 +130,7 @@ impl Package {
         Ok(Self(SlotName::ALL.map(|slot| {
             let at = image_at(slot, lengths) as usize;
             Linked {
-                header: headers[slot.index()],
+                header: *headers[slot.index()],
                 image: bytes[at..at + lengths[slot.index()] as usize].to_vec(),
             }
         })))

@@ -92,6 +92,14 @@ impl Script {
         &self.new
     }
 
+    /// The flash of a device that runs slot A and has just taken an update whose image is so long.
+    pub fn flash_with_update(&self, length: usize) -> Flash {
+        let long = changed(&self.key, NEW, |image| image.resize(length, 0));
+        self.flash(0, |device| {
+            device.update(&long).expect("it is taken");
+        })
+    }
+
     /// The flash of a device that has confirmed slot A, with so many older lines in its log, after `change` by the bootloader's own code.
     fn flash(&self, records: usize, change: impl Fn(&mut Device)) -> Flash {
         let mut flash = Flash::new(2 << 20, *b"SQUITTER");
@@ -269,6 +277,7 @@ fn changed(key: &KeyPair, version: u8, change: impl Fn(&mut Vec<u8>)) -> Vec<u8>
     for linked in &mut package.0 {
         let header = Header {
             version: [version, 0, 0, 0],
+            image_length: linked.image.len() as u32,
             image_sha256: Sha256::digest(&linked.image).into(),
             image_crc: boot_contract::crc32(&linked.image),
             ..Header::decode(&linked.header).expect("a header")

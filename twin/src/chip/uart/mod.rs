@@ -270,7 +270,7 @@ impl Uart {
         if let Some(end) = self.shifting {
             next = next.min(end);
         }
-        if !self.far.queue.is_empty() && self.far_framing().bit != 0 {
+        if !self.far.queue.is_empty() && self.far_sends() && self.far_framing().bit != 0 {
             next = next.min(self.far.busy_until);
         }
         let sampled = [
@@ -317,9 +317,13 @@ impl Uart {
         self.far_go_on(now * FINE);
     }
 
+    /// A far end without a rate of its own waits until the device has one and listens.
+    fn far_sends(&self) -> bool {
+        self.far.format.is_some() || self.ears_on()
+    }
+
     fn far_go_on(&mut self, now: u64) {
-        // A far end without a rate of its own waits until the device has one and listens.
-        if self.far.format.is_some() || self.ears_on() {
+        if self.far_sends() {
             let framing = self.far_framing();
             self.far.go_on(&framing, now);
         }

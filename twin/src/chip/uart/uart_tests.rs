@@ -328,3 +328,14 @@ fn dma_on_error_stops_asking_while_an_error_is_up() {
     chip.bus.write32(ICR, 0x7ff);
     assert!(chip.bus.uart[0].rx_ready());
 }
+
+#[test]
+fn a_far_end_that_speaks_before_the_device_listens_waits_for_it() {
+    let mut chip = uart(EIGHT | FIFOS, 0);
+    send(&mut chip, b"U");
+    assert_eq!(chip.bus.uart[0].next_event(), u64::MAX);
+    run(&mut chip, 20 * BIT).expect("it runs");
+    chip.bus.write32(CR, ON);
+    run(&mut chip, 10 * BIT).expect("it runs");
+    assert_eq!(received(&mut chip), [u32::from(b'U')]);
+}
