@@ -98,8 +98,7 @@ impl Device for Receiver {
                 Ok(())
             }
             Report::Test => {
-                let is_receiving = self.stored.settings.rx_enable && self.states.is_receiving;
-                let checks = self_test::run(self, is_receiving);
+                let checks = self_test::run(self);
                 for check in &checks {
                     out.line(format_args!("{check}"));
                 }

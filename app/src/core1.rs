@@ -3,6 +3,7 @@
 //! ```text
 //!   wait (WFI) for 32 words ─▶ demodulate up to the newest word ─▶ queue of 127 frames ─▶ wake core 0 if any
 //!     128 us                     the budget: 15 360 cycles a block       full: dropped, counted
+//!                                while nobody receives: passed over, counted
 //! ```
 //! Everything here, and all it calls, is placed in SRAM by `linker/app.x`; interrupts stay masked.
 
@@ -52,6 +53,10 @@ pub struct Context {
     pub demod_counters: &'static Counters,
     /// The noise at the antenna as core 0 measures it, 1/100 dBm.
     pub floor_cdbm: &'static AtomicI32,
+    /// Whether there is anybody to receive for: not in CONFIGURATION, nor with `RX_ENABLE=0`.
+    pub is_receiving: &'static AtomicBool,
+    /// Words that were sampled meanwhile and not looked at. The sampler never stops, because stamps count its samples.
+    pub unheard_words: &'static AtomicU32,
     /// Whether core 0 wants refused frames, too.
     pub wants_refused: &'static AtomicBool,
     pub queue: Producer<'static, RawFrame>,
@@ -79,21 +84,24 @@ fn block(context: &mut Context) {
     let asleep_from_us = hal::timer::now_us_low();
     let written = context.capture.wait();
     let slept_us = hal::timer::now_us_low().wrapping_sub(asleep_from_us);
-    let idle_us = context.idle_us.load(Ordering::Relaxed);
-    context
-        .idle_us
-        .store(idle_us.wrapping_add(slept_us), Ordering::Relaxed);
+    add(context.idle_us, slept_us);
     let Context {
         capture,
         rings,
         demodulator,
         demod_counters,
         floor_cdbm,
+        is_receiving,
+        unheard_words,
         wants_refused,
         queue,
         queue_counters,
         ..
     } = context;
+    if !is_receiving.load(Ordering::Relaxed) {
+        add(unheard_words, demodulator.pass_over(written));
+        return;
+    }
     demodulator.set_floor(floor_cdbm.load(Ordering::Relaxed) as i16);
     demodulator.tell_refused(wants_refused.load(Ordering::Relaxed));
     let mut heard = false;
@@ -123,11 +131,14 @@ fn block(context: &mut Context) {
     }
 }
 
-/// One writer: a load and a store do.
 #[inline(always)]
 fn count(counter: &AtomicU32) {
-    counter.store(
-        counter.load(Ordering::Relaxed).wrapping_add(1),
-        Ordering::Relaxed,
-    );
+    add(counter, 1);
+}
+
+/// One writer: a load and a store do.
+#[inline(always)]
+fn add(counter: &AtomicU32, count: u32) {
+    let sum = counter.load(Ordering::Relaxed).wrapping_add(count);
+    counter.store(sum, Ordering::Relaxed);
 }

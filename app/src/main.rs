@@ -86,11 +86,13 @@ static TRACKER: TakeOnce<Tracker<AIRCRAFT>> = TakeOnce::new(Tracker::new());
 /// The noise at the antenna, 1/100 dBm: core 0 measures, core 1 uses it.
 static FLOOR_CDBM: AtomicI32 = AtomicI32::new(Calibration::ADSBEE_1090.floor_cdbm as i32);
 static SHARED: Shared = Shared {
+    is_receiving: AtomicBool::new(false),
     wants_refused: AtomicBool::new(false),
     capture: CaptureCounters::new(),
     demod: Counters::new(),
     queue: QueueCounters::new(),
     core1_idle_us: AtomicU32::new(0),
+    unheard_words: AtomicU32::new(0),
 };
 
 #[hal::entry]
@@ -154,6 +156,8 @@ fn start() -> Option<core::convert::Infallible> {
         demodulator: Demodulator::new(Calibration::ADSBEE_1090),
         demod_counters: &SHARED.demod,
         floor_cdbm: &FLOOR_CDBM,
+        is_receiving: &SHARED.is_receiving,
+        unheard_words: &SHARED.unheard_words,
         wants_refused: &SHARED.wants_refused,
         queue: producer,
         queue_counters: &SHARED.queue,
@@ -215,6 +219,9 @@ fn start() -> Option<core::convert::Infallible> {
         let more_frames = receiver.frames(|| led.frame());
         let more_reports = receiver.reports();
         let more_bytes = receiver.commands(&mut input) | receiver.listen();
+        SHARED
+            .is_receiving
+            .store(receiver.is_receiving(), Ordering::Relaxed);
         receiver.leave_if_due();
         if receiver.confirm.serve(receiver.now_ms()) == Due::GiveUp {
             LastWords::new(End::GaveUp).say();

@@ -52,6 +52,8 @@ const AIRCRAFT_A_TURN: usize = 8;
 /// What the cores share beside the queue: counters that core 1 writes, and a wish of core 0. One static, because a small one of its own would stand between
 /// the rings, whose alignment makes it 8 KiB large.
 pub struct Shared {
+    /// Whether frames are taken: core 1 looks at no sample while not.
+    pub is_receiving: AtomicBool,
     /// Whether a port wants refused frames: core 1 hands them on.
     pub wants_refused: AtomicBool,
     pub capture: CaptureCounters,
@@ -59,6 +61,8 @@ pub struct Shared {
     pub queue: QueueCounters,
     /// Core 1's sleep, microseconds.
     pub core1_idle_us: AtomicU32,
+    /// Words that core 1 passed over while reception was off.
+    pub unheard_words: AtomicU32,
 }
 
 /// Everything core 0 works with.
@@ -165,7 +169,8 @@ impl Receiver {
             let Some(raw_frame) = self.queue.dequeue() else {
                 return false;
             };
-            if !(self.states.is_receiving && self.stored.settings.rx_enable) {
+            // Core 1 had it under way when reception ended.
+            if !self.is_receiving() {
                 self.decode.discarded = self.decode.discarded.wrapping_add(1);
                 continue;
             }
@@ -216,6 +221,11 @@ impl Receiver {
             quality_cdb,
             times: self.clock.times(arrival),
         }
+    }
+
+    /// Whether frames are taken: in RUN, unless `RX_ENABLE=0`.
+    pub fn is_receiving(&self) -> bool {
+        self.states.is_receiving && self.stored.settings.rx_enable
     }
 
     /// Whether a port wants frames that were refused.
@@ -367,6 +377,7 @@ impl Receiver {
             slot: self.confirm.slot(),
             confirmed: self.confirm.is_confirmed(),
             capture: &self.shared.capture,
+            unheard_words: self.shared.unheard_words.load(Ordering::Relaxed),
             demod: &self.shared.demod,
             air: self.air.seen,
             floor_cdbm: self.air.floor_cdbm(),

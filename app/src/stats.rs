@@ -19,6 +19,7 @@
 //!
 //! | sum |
 //! |---|
+//! | CAPTURE words = DEMOD words + overrun_words + CAPTURE unheard_words, and up to 72 under way |
 //! | DEMOD the five accepted = QUEUE offered |
 //! | QUEUE offered = queued + dropped |
 //! | DEMOD handed_on = QUEUE refused_queued + refused_dropped |
@@ -52,7 +53,7 @@ pub struct DecodeCounters {
     pub unjudged: u32,
     /// Refused by core 1, taken for raw outputs alone; not in `offered`.
     pub refused: u32,
-    /// Taken while reception is off: in CONFIGURATION, or by `RX_ENABLE=0`.
+    /// Taken while reception was off already (in CONFIGURATION, or by `RX_ENABLE=0`): core 1 had them under way when it ended.
     pub discarded: u32,
 }
 
@@ -63,6 +64,8 @@ pub struct Stats<'a> {
     pub slot: Option<SlotName>,
     pub confirmed: bool,
     pub capture: &'a CaptureCounters,
+    /// Words passed over while reception was off.
+    pub unheard_words: u32,
     pub demod: &'a demod::Counters,
     pub air: Seen,
     pub floor_cdbm: Option<i16>,
@@ -149,6 +152,7 @@ impl Stats<'_> {
                 ("blocks", value(&self.capture.blocks)),
                 ("words", value(&self.capture.words)),
                 ("fifo_overflows", value(&self.capture.fifo_overflows)),
+                ("unheard_words", self.unheard_words),
             ],
         ));
         out(line(

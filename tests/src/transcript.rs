@@ -12,8 +12,12 @@
 //!   -- uart is at 921600                    COMMS_UART's rate, within its divisor's step
 //!   -- power cut                            off and on again, up to the open console
 //!   -- starts                               waits for a start to be over, up to the open console
+//!   -- off and on                           the same without waiting: BOOTLOADER has its window
+//!   -- restarts                             waits for the next reset alone
+//!   -- runs                                 waits until BOOTLOADER has been left, up to the open console
+//!   -- on adsbee_1090_e                     the board, where it is not the usual one
 //! ```
-//! `{…}` in an expected line stands for anything within the line. Each block of sends is followed by what both ports say until they are silent;
+//! `{…}` in an expected line stands for anything within the line; `{lines}` alone for any number of lines. Each block of sends is followed by what both ports say until they are silent;
 //! between the ports the order does not matter, within one it does. What is not expected is a failure.
 
 use std::fmt::Write;
@@ -145,12 +149,7 @@ fn hear(
 
 fn compare(port: &str, expected: &[&str], said: &str) -> Result<(), String> {
     let lines: Vec<&str> = said.split_inclusive('\n').collect();
-    let same = lines.len() == expected.len()
-        && lines.iter().zip(expected).all(|(line, expected)| {
-            line.strip_suffix("\r\n")
-                .is_some_and(|line| fits(line, expected))
-        });
-    if same {
+    if all_fit(&lines, expected) {
         return Ok(());
     }
     let mut message = format!("{port} said\n");
@@ -162,6 +161,61 @@ fn compare(port: &str, expected: &[&str], said: &str) -> Result<(), String> {
         let _ = writeln!(message, "  {line:?}");
     }
     Err(message)
+}
+
+/// Whether lines with their ends are the expected ones, among which `{lines}` stands for any number.
+fn all_fit(lines: &[&str], expected: &[&str]) -> bool {
+    match expected {
+        [] => lines.is_empty(),
+        ["{lines}", expected @ ..] => {
+            (0..=lines.len()).any(|some| all_fit(&lines[some..], expected))
+        }
+        [first, expected @ ..] => lines.split_first().is_some_and(|(line, lines)| {
+            let line = line.strip_suffix("\r\n");
+            line.is_some_and(|line| fits(line, first)) && all_fit(lines, expected)
+        }),
+    }
+}
+
+/// The board that a transcript names.
+pub fn board_of(text: &str) -> Option<&str> {
+    text.lines().find_map(|line| line.strip_prefix("-- on "))
+}
+
+/// Where a line was typed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Where {
+    /// RUN, on CONSOLE.
+    Run,
+    /// CONFIGURATION, on either port.
+    Configuration,
+}
+
+/// The commands that a transcript types, without `AT+`, each with where: as far as the device says in which state it is.
+pub fn typed(text: &str) -> Vec<(Where, String)> {
+    let mut state = Some(Where::Run);
+    let mut found = Vec::new();
+    for (_, line) in parse(text).expect("a transcript") {
+        match line {
+            Line::Send(port, bytes) => {
+                let line = String::from_utf8_lossy(&bytes).into_owned();
+                let is_known = state == Some(Where::Configuration) || port == Port::Usb;
+                if let (Some(state), true, Some(line)) =
+                    (state, is_known, line.trim_end().strip_prefix("AT+"))
+                {
+                    found.push((state, line.to_owned()));
+                }
+            }
+            Line::Expect(_, line) => match line.as_str() {
+                "AT+RUN_START" => state = Some(Where::Run),
+                "AT+CONFIG_START" => state = Some(Where::Configuration),
+                "AT+BOOTLOADER_START" => state = None,
+                _ => {}
+            },
+            Line::Do(_) => {}
+        }
+    }
+    found
 }
 
 /// Whether a line is the expected one, whose `{…}` stand for anything.
@@ -213,6 +267,14 @@ fn act(board: &mut Board, what: &str) -> Result<(), String> {
             .carry_out(Fault::PowerCut { off_ms: OFF_MS })
             .and_then(|()| start(board, resets)),
         ["starts"] => start(board, resets),
+        ["off", "and", "on"] => board.carry_out(Fault::PowerCut { off_ms: OFF_MS }),
+        ["restarts"] => board
+            .run_until(1, |board| board.chip.resets.len() > resets)
+            .map(|_| ()),
+        ["runs"] => board
+            .wait_for_capture()
+            .and_then(|()| board.wait_for_console()),
+        ["on", name] if name == board.kind.name => Ok(()),
         _ => return Err(format!("{what:?} is nothing that can be done")),
     };
     done.map_err(|error| error.to_string())

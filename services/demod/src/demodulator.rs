@@ -172,6 +172,15 @@ impl Demodulator {
         self.tells_refused = tells;
     }
 
+    /// Steps over the words up to `written`, which nobody wants to hear; gives how many. They are not looked at later.
+    #[inline]
+    pub fn pass_over(&mut self, written: u64) -> u32 {
+        let to = written.max(self.next) & !1;
+        let passed = (to - self.next) as u32;
+        self.next = to;
+        passed
+    }
+
     /// Works off the rings up to `written` words since the start of capture, and gives each frame to `sink`. `newest` tells how many words there are by
     /// then: a long backlog takes its time, in which the smaller rings go on.
     #[inline]

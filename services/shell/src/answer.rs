@@ -1,6 +1,6 @@
 //! One line answered: what is changed, what is told, what else follows.
 
-use crate::command::{Command, Kind};
+use crate::command::{Command, Kind, MASK};
 use crate::device::{Device, Report, Saving};
 use crate::dialect::{Dialect, Out};
 use crate::line::Input;
@@ -80,15 +80,24 @@ fn carry_out<D: Device>(
         (What::Command { .. }, Kind::Describe) => return Err(Refusal::NoQuery),
         (_, Kind::Describe) => describe(entry, dialect, out),
         (What::Command { action, forms }, kind) => {
-            return act(action, forms, kind, place, device, out);
+            allowed(action, forms, kind)?;
+            return act(action, command, place, device, out);
         }
         (What::Value { info, writable }, kind) => {
             return value(entry, info, writable, kind, place, device, out);
         }
-        (What::Setting { fields, scope, .. }, Kind::Set(text)) => {
+        (
+            What::Setting {
+                fields,
+                scope,
+                secret,
+                ..
+            },
+            Kind::Set(text),
+        ) => {
             let new = changed(device.settings(), scope, fields, text, place.port)?;
             device.apply(&new).map_err(Refusal::Device)?;
-            if dialect == Dialect::Adsbee {
+            if dialect == Dialect::Adsbee && !secret {
                 echo(command.name, scope, device.settings(), out);
             }
             dialect.tell(out, Ok::<(), Refusal>(()));
@@ -124,11 +133,15 @@ fn query<D: Device>(
     device: &mut D,
     out: &mut dyn Out,
 ) -> Result<(), Refusal> {
-    let What::Setting { scope, .. } = entry.what else {
+    let What::Setting { scope, secret, .. } = entry.what else {
         return Ok(());
     };
     let dialect = place.dialect();
     let name = entry.name;
+    if secret {
+        out.line(format_args!("{}{name}={MASK}", dialect.prefix()));
+        return Ok(());
+    }
     if scope == Scope::Echoed {
         let read = device.rx_gain().map_err(Refusal::Device)?;
         let set = device.settings().rx_gain;
@@ -208,23 +221,27 @@ fn value<D: Device>(
     Ok(After::Event(event, dialect))
 }
 
+/// Whether a command is written in one of its forms.
+fn allowed(action: Action, forms: Forms, kind: Kind<'_>) -> Result<(), Refusal> {
+    match kind {
+        Kind::Bare if !forms.bare => Err(Refusal::NotBare),
+        Kind::Query(_) if !forms.query => Err(Refusal::NoQuery),
+        Kind::Set(_) if !forms.set => Err(Refusal::NoSet),
+        Kind::Query(word) if !word.is_empty() && action != Action::Settings => {
+            Err(Refusal::NoQuery)
+        }
+        _ => Ok(()),
+    }
+}
+
 fn act<D: Device>(
     action: Action,
-    forms: Forms,
-    kind: Kind<'_>,
+    command: Command<'_>,
     place: Place,
     device: &mut D,
     out: &mut dyn Out,
 ) -> Result<After, Refusal> {
-    match kind {
-        Kind::Bare if !forms.bare => return Err(Refusal::NotBare),
-        Kind::Query(_) if !forms.query => return Err(Refusal::NoQuery),
-        Kind::Set(_) if !forms.set => return Err(Refusal::NoSet),
-        Kind::Query(word) if !word.is_empty() && action != Action::Settings => {
-            return Err(Refusal::NoQuery);
-        }
-        _ => {}
-    }
+    let Command { name, kind } = command;
     let dialect = place.dialect();
     let done = match action {
         Action::Help => return Ok(After::List(Listing::new(List::Help))),
@@ -249,9 +266,14 @@ fn act<D: Device>(
         Action::TlRead => {
             let (low, high) = device.trigger_levels().map_err(Refusal::Device)?;
             let prefix = dialect.prefix();
+            // As TL_SET: under the name as typed, in RUN.
+            let name = match dialect {
+                Dialect::Adsbee => name,
+                Dialect::Aerobits => "TL_READ",
+            };
             match low {
-                Some(low) => out.line(format_args!("{prefix}TL_READ={low},{high}")),
-                None => out.line(format_args!("{prefix}TL_READ={high}")),
+                Some(low) => out.line(format_args!("{prefix}{name}={low},{high}")),
+                None => out.line(format_args!("{prefix}{name}={high}")),
             }
             return Ok(After::Done);
         }

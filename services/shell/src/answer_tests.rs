@@ -1,6 +1,7 @@
 //! Replies that no example prints, and what `?DUMP` is for.
 
 use super::*;
+use crate::list;
 use crate::model::Model;
 use crate::shown::Shown;
 use settings::{Group, ROWS, Value};
@@ -78,31 +79,102 @@ fn a_dump_brings_the_factorys_set_to_any_other() {
 }
 
 #[test]
-fn a_secret_is_never_told() {
-    let entry = Entry {
-        name: "PASSWORD",
-        aliases: &[],
-        group: Group::System,
-        arguments: "",
-        help: "",
-        what: What::Setting {
-            fields: &[Field::Serial],
-            scope: Scope::Device,
-            restart: false,
-            secret: true,
-        },
+fn a_secret_is_never_told_in_any_list_whatever_its_scope() {
+    let mut device = Model {
+        has_gain: true,
+        ..Model::default()
     };
+    device.settings.serial = settings::Text::new("open sesame").unwrap();
+    for scope in [
+        Scope::Device,
+        Scope::Port,
+        Scope::BaudRate,
+        Scope::TriggerLevel,
+        Scope::Echoed,
+        Scope::Position,
+        Scope::SerialNumber,
+    ] {
+        let entry = Entry {
+            name: "PASSWORD",
+            aliases: &[],
+            group: Group::System,
+            arguments: "",
+            help: "",
+            what: What::Setting {
+                fields: &[Field::Serial],
+                scope,
+                restart: false,
+                secret: true,
+            },
+        };
+        for state in [State::Run, CONFIGURATION] {
+            let place = place(Port::Console, state);
+            let shown = Shown {
+                entry: &entry,
+                device: &device,
+                place,
+                dialect: place.dialect(),
+            };
+            // Headings of AT+HELP in CONFIGURATION hold it like this.
+            assert_eq!(shown.to_string(), "********");
+            let mut said = Vec::new();
+            let mut out = |text: core::fmt::Arguments<'_>| said.push(text.to_string());
+            query("PASSWORD", &entry, place, &mut device, &mut out).unwrap();
+            list::readable(&entry, &device, place, &mut out);
+            list::plain(&entry, &device, place, &mut out);
+            list::dump(&entry, &device, place, &mut out);
+            assert_eq!(said.len(), 4, "{scope:?}: {said:?}");
+            for line in said {
+                assert!(
+                    line.starts_with(['+', 'A', 'P']) && line.ends_with("********"),
+                    "{scope:?}: {line}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_mask_that_is_sent_again_leaves_the_secret_as_it_is() {
     let mut device = Model::default();
     device.settings.serial = settings::Text::new("open sesame").unwrap();
-    for dialect in [Dialect::Adsbee, Dialect::Aerobits] {
-        let shown = Shown {
-            entry: &entry,
-            device: &device,
-            place: place(Port::Console, State::Run),
-            dialect,
-        };
-        assert_eq!(shown.to_string(), "********");
+    let before = device.settings;
+    let run = place(Port::Console, State::Run);
+    for line in [
+        "AT+SERIAL_NUMBER=********",
+        "AT+MAVLINK_ID=********,********",
+    ] {
+        assert_eq!(told(&mut device, run, line), ["OK"], "{line}");
     }
+    assert_eq!(device.settings, before);
+}
+
+#[test]
+fn a_refusal_never_repeats_what_was_typed() {
+    let mut device = Model::default();
+    for state in [State::Run, CONFIGURATION] {
+        for entry in settings::ENTRIES {
+            let line = std::format!("AT+{}=open sesame,sesame,sesame,sesame,sesame", entry.name);
+            for said in told(&mut device, place(Port::Console, state), &line) {
+                assert!(!said.contains("sesame"), "{line}: {said}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_the_trigger_levels_read_is_told_under_the_name_as_typed() {
+    let mut device = Model::default();
+    let run = place(Port::Console, State::Run);
+    for line in ["AT+TL_READ", "AT+TL_READ?"] {
+        assert_eq!(told(&mut device, run, line), ["+TL_READ=1300"]);
+    }
+    assert_eq!(told(&mut device, run, "AT+MTLREAD"), ["+MTLREAD=1300"]);
+    let configuration = place(Port::Console, CONFIGURATION);
+    assert_eq!(
+        told(&mut device, configuration, "AT+mtlread?"),
+        ["AT+TL_READ=1300"]
+    );
 }
 
 #[test]

@@ -60,14 +60,17 @@ impl<'a> Command<'a> {
 /// Longest list of arguments.
 pub(crate) const MAX_ARGUMENTS: usize = 4;
 
-/// Up to `most` arguments of a `Set`; a blank or missing one is `None`.
+/// What stands for a secret in replies and dumps. As an argument it leaves the value unchanged, as a blank one does: a dump that is sent again costs no password.
+pub(crate) const MASK: &str = "********";
+
+/// Up to `most` arguments of a `Set`; a blank or missing one is `None`, and so is a masked one.
 pub(crate) fn arguments(text: &str, most: usize) -> Result<[Option<&str>; MAX_ARGUMENTS], Refusal> {
     let mut found = [None; MAX_ARGUMENTS];
     for (index, piece) in text.split(',').enumerate() {
         if index >= most.min(MAX_ARGUMENTS) {
             return Err(Refusal::ArgumentCount);
         }
-        found[index] = (!piece.is_empty()).then_some(piece);
+        found[index] = (!piece.is_empty() && piece != MASK).then_some(piece);
     }
     Ok(found)
 }

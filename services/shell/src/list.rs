@@ -11,6 +11,7 @@
 //!
 //! The lists of 003's CONFIGURATION end without a word, as its examples do.
 
+use crate::command::MASK;
 use crate::device::Device;
 use crate::dialect::{Dialect, Out};
 use crate::licenses::LICENSES;
@@ -114,17 +115,20 @@ fn shown<'a, D: Device>(entry: &'a Entry, device: &'a D, place: Place) -> Shown<
     }
 }
 
-fn plain<D: Device>(entry: &Entry, device: &D, place: Place, out: &mut dyn Out) {
+pub(crate) fn plain<D: Device>(entry: &Entry, device: &D, place: Place, out: &mut dyn Out) {
     if entry.group != Group::Commands {
         let value = shown(entry, device, place);
         out.line(format_args!("AT+{}={value}", entry.name));
     }
 }
 
-fn readable<D: Device>(entry: &Entry, device: &D, place: Place, out: &mut dyn Out) {
+pub(crate) fn readable<D: Device>(entry: &Entry, device: &D, place: Place, out: &mut dyn Out) {
     let at = |port| shown(entry, device, Place { port, ..place });
     let name = entry.name;
     match entry.what {
+        What::Setting { secret: true, .. } => {
+            out.line(format_args!("{name}: {}", at(place.port)));
+        }
         What::Setting {
             scope: Scope::Port, ..
         } => {
@@ -166,12 +170,21 @@ impl fmt::Display for Arguments<'_> {
     }
 }
 
-fn dump<D: Device>(entry: &Entry, device: &D, place: Place, out: &mut dyn Out) {
-    let What::Setting { fields, scope, .. } = entry.what else {
+pub(crate) fn dump<D: Device>(entry: &Entry, device: &D, place: Place, out: &mut dyn Out) {
+    let What::Setting {
+        fields,
+        scope,
+        secret,
+        ..
+    } = entry.what
+    else {
         return;
     };
     let settings = device.settings();
     let name = entry.name;
+    if secret {
+        return out.line(format_args!("AT+{name}={MASK}"));
+    }
     match scope {
         Scope::Port => {
             for port in Port::ALL {

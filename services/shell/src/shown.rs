@@ -1,14 +1,12 @@
 //! Values as replies write them.
 
+use crate::command::MASK;
 use crate::device::Device;
 use crate::dialect::Dialect;
 use crate::state::State;
 use core::fmt;
 use settings::choices::RxSource;
 use settings::{Entry, Field, INDEXED_BAUDS, Info, Port, Scope, Settings, Value, What};
-
-/// What stands for a secret.
-const MASK: &str = "********";
 
 /// Where a line arrived, and in which state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -65,7 +65,8 @@ impl<M: Medium, const MAX: usize> Store<M, MAX> {
             .and_then(|newest| self.blob.get(..usize::from(newest.head.length))))
     }
 
-    /// Finds the newest whole bank; its blob is in `self.blob` then.
+    /// Finds the newest whole bank; its blob is in `self.blob` then. Where a read fails, the bank known before stays the newest: nobody else writes, and
+    /// a save that took the memory for empty would be numbered below what is in it.
     pub(crate) fn open(&mut self) -> Result<(), M::Error> {
         let mut heads = [None; BANKS as usize];
         for (bank, head) in (0..).zip(&mut heads) {
@@ -73,17 +74,18 @@ impl<M: Medium, const MAX: usize> Store<M, MAX> {
             self.medium.read(bank, 0, &mut page)?;
             *head = Head::decode(&page);
         }
-        self.newest = None;
+        let mut newest = None;
         while let Some((bank, head)) = highest(&heads) {
             if let Some(blob) = self.blob.get_mut(..usize::from(head.length)) {
                 self.medium.read(bank, PAGE, blob)?;
                 if head.holds(blob) {
-                    self.newest = Some(Newest { bank, head });
+                    newest = Some(Newest { bank, head });
                     break;
                 }
             }
             heads[usize::from(bank)] = None;
         }
+        self.newest = newest;
         self.is_open = true;
         Ok(())
     }

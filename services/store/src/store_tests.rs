@@ -22,6 +22,8 @@ struct Memory {
     writes_left: usize,
     /// Questions answered "busy" after each write.
     busy: u32,
+    /// Reads that still work before one, and one alone, fails.
+    reads_to_failure: usize,
 }
 
 impl Memory {
@@ -33,6 +35,7 @@ impl Memory {
             stuck: Vec::new(),
             writes_left: usize::MAX,
             busy: 0,
+            reads_to_failure: usize::MAX,
         }
     }
 }
@@ -42,6 +45,11 @@ impl Medium for Memory {
     const BANK: usize = BANK;
 
     fn read(&mut self, bank: u8, at: usize, out: &mut [u8]) -> Result<(), Silent> {
+        let Some(left) = self.reads_to_failure.checked_sub(1) else {
+            self.reads_to_failure = usize::MAX;
+            return Err(Silent);
+        };
+        self.reads_to_failure = left;
         let from = usize::from(bank) * BANK + at;
         out.copy_from_slice(&self.bytes[from..from + out.len()]);
         Ok(())
@@ -83,6 +91,7 @@ fn saved(store: &mut Ours, blob: &[u8]) -> Result<Outcome, SaveError<Silent>> {
 /// What the next start finds.
 fn found_anew(store: &Ours) -> Option<Vec<u8>> {
     let mut next = Ours::new(store.medium.clone());
+    next.medium.reads_to_failure = usize::MAX;
     next.load().unwrap().map(<[u8]>::to_vec)
 }
 
@@ -269,5 +278,42 @@ proptest::proptest! {
         assert_eq!(store.load(), Ok(None));
         assert_eq!(saved(&mut store, &blob), Ok(Outcome::Saved));
         assert_eq!(found_anew(&store), Some(blob));
+    }
+}
+
+#[test]
+fn a_read_that_fails_once_costs_neither_what_is_stored_nor_the_place_of_the_next_save() {
+    // Heads of four banks, then the blob: each of the reads of a load, and each of a save.
+    for saves in 1..=5u8 {
+        for reads in 0..12 {
+            let mut store = Ours::new(Memory::new());
+            for n in 1..=saves {
+                assert_eq!(saved(&mut store, &[n; 40]), Ok(Outcome::Saved));
+            }
+            let case = std::format!("{saves} saves, read {reads}");
+            store.medium.reads_to_failure = reads;
+            let loaded = store.load().map(|blob| blob.map(<[u8]>::to_vec));
+            assert!(
+                loaded == Ok(Some(vec![saves; 40])) || loaded == Err(Silent),
+                "{case}"
+            );
+            let first = saved(&mut store, b"another");
+            assert!(
+                first == Ok(Outcome::Saved) || first == Err(SaveError::Medium(Silent)),
+                "{case}"
+            );
+            if first.is_err() {
+                // The new one where reading back its head, the last read, was what failed.
+                let found = found_anew(&store);
+                let old = found == Some(vec![saves; 40]);
+                assert!(
+                    old || found == Some(b"another".to_vec()),
+                    "{case}: {found:?}"
+                );
+                assert_eq!(saved(&mut store, b"another"), Ok(Outcome::Saved), "{case}");
+            }
+            assert_eq!(found_anew(&store), Some(b"another".to_vec()), "{case}");
+            assert_eq!(store.number(), u32::from(saves) + 1, "{case}");
+        }
     }
 }

@@ -52,7 +52,7 @@ pub fn in_run(kind: BoardKind) -> Board {
 }
 
 /// The blob that the next start will find.
-fn stored(board: &mut Board) -> Option<Vec<u8>> {
+pub fn stored(board: &mut Board) -> Option<Vec<u8>> {
     let mut memory;
     if let Some(eeprom) = board.eeprom() {
         memory = Memory::new(Kind::Eeprom);
