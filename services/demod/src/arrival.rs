@@ -44,12 +44,12 @@ const BEFORE: u32 = 3 << FRACTION;
 const OFF_FRACTION: u32 = 7;
 /// Parts of a tick in the least step of such a distance: 7 ticks times 256 over 128.
 const PARTS_A_STEP: i32 = 14;
-/// A distance is kept from so many samples before the window's first: it is never negative, and 4 samples where an edge lies right where it is expected.
-const BIAS: u32 = 1 << OFF_FRACTION >> 1;
-const CENTRE: i32 = 4 << OFF_FRACTION;
+/// A distance is kept from the window's first sample, half a sample short: it is never negative, and three and a half samples where an edge lies right where it is expected.
+const CENTRE: i32 = 7 << OFF_FRACTION >> 1;
 /// Bits asked in a go, and the first bit of each go: behind the first byte, in which a slicer that follows the level has not settled yet, to the end of the first 56 bits.
 const GO_BITS: u32 = 24;
 const FIRST_BIT: u32 = 8;
+const GOES: usize = 2;
 /// Edges asked at most.
 const MOST_EDGES: u32 = 20;
 /// Fewest edges that are an arrival.
@@ -178,57 +178,43 @@ pub(crate) fn measure(ring: &ArrivalRing, samples: &Samples, coarse: u64, frame:
 /// Measures the leading edges of a frame whose first bit begins at this place of the ring.
 #[inline(never)]
 fn leading_edges(ring: &ArrivalRing, first_bit: u32, frame: &[u8]) -> Sums {
-    let sums = Sums::default();
-    let &[a, b, c, d, e, f, g, ..] = frame else {
-        return sums;
-    };
-    let at = first_bit.wrapping_add(FIRST_BIT * BIT);
-    let sums = go(ring, at, u32::from_be_bytes([a, b, c, d]), sums);
-    if sums.packed >= MOST_EDGES * AN_EDGE {
-        return sums;
-    }
-    let at = at.wrapping_add(GO_BITS * BIT);
-    go(ring, at, u32::from_be_bytes([d, e, f, g]), sums)
-}
-
-/// The edges of the last 24 of these bits, the first of which begins at this place; the one before them tells whether it continues a pulse.
-#[inline(never)]
-fn go(ring: &ArrivalRing, first: u32, bits: u32, sums: Sums) -> Sums {
-    // The bit before in bit 31, the bit itself in bit 30; a bit behind the last ends the loop.
-    let mut bits = bits << (31 - GO_BITS) | 1 << (30 - GO_BITS);
-    let mut at = first.wrapping_sub(BEFORE);
-    let Sums {
-        mut packed,
-        mut squares,
-    } = sums;
-    while bits << 2 != 0 {
-        // A 1 behind a 0 continues its pulse.
-        let pair = bits >> 30;
-        bits <<= 1;
-        let from = if pair == 0b11 {
-            at
-        } else {
-            at.wrapping_add(HALF_BIT)
-        };
-        at = at.wrapping_add(BIT);
-        if pair == 0b01 {
-            continue;
-        }
-        let Some(window) = ring.eight(from) else {
-            continue;
-        };
-        let lows = u32::from(LOWS[usize::from(window)]);
-        if lows != 0 {
-            let past = from << (32 - FRACTION) >> (32 - OFF_FRACTION);
-            let distance = (lows << OFF_FRACTION) + BIAS - past;
-            packed += distance + AN_EDGE;
-            squares += distance * distance;
-            if packed >= MOST_EDGES * AN_EDGE {
-                break;
+    // Counted up to zero: the sign tells when there are enough.
+    let mut packed = 0u32.wrapping_sub(MOST_EDGES * AN_EDGE);
+    let mut squares = 0u32;
+    let mut at = first_bit.wrapping_add(FIRST_BIT * BIT).wrapping_sub(BEFORE);
+    'frame: for go in frame.windows(4).step_by(GO_BITS as usize / 8).take(GOES) {
+        let &[a, b, c, d] = go else { break };
+        // The 24 bits behind the first byte, and the one before them, which tells whether the first continues a pulse; a 1 behind them ends the loop.
+        let mut bits = u32::from_be_bytes([a, b, c, d]) << (31 - GO_BITS) | 1 << (30 - GO_BITS);
+        while bits << 2 != 0 {
+            let behind_one = bits.cast_signed() < 0;
+            bits <<= 1;
+            let mut from = at;
+            at = at.wrapping_add(BIT);
+            if bits.cast_signed() >= 0 {
+                from = from.wrapping_add(HALF_BIT);
+            } else if !behind_one {
+                continue;
+            }
+            let Some(window) = ring.eight(from) else {
+                continue;
+            };
+            let lows = u32::from(LOWS[usize::from(window)]);
+            if lows != 0 {
+                let past = from << (32 - FRACTION) >> (32 - OFF_FRACTION);
+                let distance = (lows << OFF_FRACTION).wrapping_sub(past);
+                squares = squares.wrapping_add(distance.wrapping_mul(distance));
+                packed = packed.wrapping_add(distance + AN_EDGE);
+                if packed.cast_signed() >= 0 {
+                    break 'frame;
+                }
             }
         }
     }
-    Sums { packed, squares }
+    Sums {
+        packed: packed.wrapping_add(MOST_EDGES * AN_EDGE),
+        squares,
+    }
 }
 
 /// The square root, rounded down.

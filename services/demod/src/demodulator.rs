@@ -20,10 +20,10 @@ use crate::gate::{Gate, Pairs, REACH, STEER_WORDS, STEP_WORDS};
 use crate::headless::{self, STRONG, WAIT_WORDS};
 use crate::heard::Heard;
 use crate::level::{self, Conversions, LEVEL_START_HALF_TICKS};
-use crate::preamble::{self, ones};
+use crate::preamble::{Preambles, ones};
 use crate::repair::Flips;
 use crate::ring::{RING_WORDS, Rings, SampleRing};
-use crate::trial::{Outcome, Tried, received, try_phases};
+use crate::trial::{Outcome, Tried, aa, received, try_phases};
 use crate::{SAMPLES_PER_WORD, TICKS_PER_SAMPLE};
 use mode_s::Frame;
 use mode_s::frame::LONG_BYTES;
@@ -83,18 +83,6 @@ impl RawFrame {
         self.flips.is_some()
     }
 
-    /// A frame of which only the preamble's first sample is known.
-    fn coarse(frame: Frame, flips: Option<Flips>, first: u64) -> Self {
-        Self {
-            frame,
-            flips,
-            arrival: ticks(first),
-            arrival_parts: 0,
-            arrival_sigma: COARSE_SIGMA,
-            level: None,
-        }
-    }
-
     /// The bits as received, before repair.
     pub fn received(&self) -> Frame {
         let mut bytes = [0; LONG_BYTES];
@@ -124,11 +112,12 @@ pub struct Demodulator {
     /// Whether refused frames are handed on, too.
     tells_refused: bool,
     /// One of the words just looked at, and its first sample.
-    refused: Option<(RawFrame, u64)>,
+    refused: Option<([u8; LONG_BYTES], u64)>,
     /// The word up to which the refused frames handed on have used up their share.
     refused_until: u64,
     heard: Heard,
     gate: Gate,
+    preambles: Preambles,
     /// Where strong bits began, the last word that had them, and the last word at which a preamble was tried.
     strong_since: u32,
     strong_last: u32,
@@ -152,6 +141,7 @@ impl Demodulator {
             refused_until: 0,
             heard: Heard::new(),
             gate: Gate::new(),
+            preambles: Preambles::new(),
             strong_since: 0,
             strong_last: u32::MAX,
             tried_last: u32::MAX,
@@ -202,15 +192,15 @@ impl Demodulator {
         self.second_samples.follow(now);
         self.conversions.follow(2 * now);
         let ring = rings.samples;
+        let mut tried = Tried::NOTHING;
         while let Some(pairs) = self.find(ring, written, counters) {
-            let accepted = self.examine(ring, pairs, counters);
-            if let Some((mut frame, first)) = self.refused.take() {
-                self.measure(rings, first, newest(), &mut frame, counters);
-                sink(frame);
+            let accepted = self.examine(ring, pairs, counters, &mut tried);
+            if let Some((bytes, first)) = self.refused.take() {
+                sink(self.measure(rings, first, newest(), &bytes, None, counters));
             }
-            if let Some(mut frame) = accepted {
-                self.measure(rings, self.accepted_at, newest(), &mut frame, counters);
-                sink(frame);
+            if accepted {
+                let (first, flips) = (self.accepted_at, Some(tried.flips));
+                sink(self.measure(rings, first, newest(), &tried.bytes, flips, counters));
             }
         }
     }
@@ -255,35 +245,30 @@ impl Demodulator {
         add(&counters.words, words);
     }
 
-    /// Looks at the two words from `self.next` on, behind which bits stand, and steps on: behind them, or near the end of the frame it found.
+    /// Looks at the two words from `self.next` on, behind which bits stand, and steps on: behind them, or near the end of the frame it found, in `tried`.
     #[inline(never)]
     fn examine(
         &mut self,
         ring: &SampleRing,
         pairs: Pairs,
         counters: &Counters,
-    ) -> Option<RawFrame> {
+        tried: &mut Tried,
+    ) -> bool {
         add(&counters.with_bits, STEP_WORDS);
         let phases = self.gate.phases(pairs);
-        let mut frame = None;
-        for (word, hits) in (self.next..).zip(preamble::hits(ring, self.next as u32)) {
-            let hits = hits & phases;
-            if hits != 0 {
-                frame = self.try_hits(ring, word, hits, counters);
-                if frame.is_some() {
-                    break;
-                }
-            }
-        }
-        let frame = frame.or_else(|| self.try_without_preamble(ring, pairs, counters));
+        let hits = self.preambles.hits(ring, self.next as u32);
+        let [first, second] = hits.map(|hits| hits & phases);
+        let accepted = first != 0 && self.try_hits(ring, self.next, first, counters, tried)
+            || second != 0 && self.try_hits(ring, self.next + 1, second, counters, tried)
+            || self.try_without_preamble(ring, pairs, counters, tried);
         let next = self.next + u64::from(STEP_WORDS);
-        let behind = if frame.is_some() {
+        let behind = if accepted {
             ((self.free_from / u64::from(SAMPLES_PER_WORD)) & !1).max(next)
         } else {
             next
         };
         self.pass((behind - self.next) as u32, counters);
-        frame
+        accepted
     }
 
     /// Tries the phases of a word at which a preamble may start, until one is a frame.
@@ -294,7 +279,8 @@ impl Demodulator {
         at: u64,
         hits: u32,
         counters: &Counters,
-    ) -> Option<RawFrame> {
+        tried: &mut Tried,
+    ) -> bool {
         let word = at as u32;
         let start = at * u64::from(SAMPLES_PER_WORD);
         add(&counters.candidates, ones(hits));
@@ -302,14 +288,16 @@ impl Demodulator {
         let accepted = self.accepted_at / u64::from(SAMPLES_PER_WORD);
         let hasty = self.gate.is_flooded() || at.saturating_sub(accepted) < HASTY_WORDS;
         let mut rest = from_phase(hits, taken.min(u64::from(SAMPLES_PER_WORD)) as u32);
-        add(&counters.superseded, ones(hits ^ rest));
+        if hits != rest {
+            add(&counters.superseded, ones(hits ^ rest));
+        }
         while rest != 0 {
             let sample = first_phase(rest);
-            let Some(tried) = try_phases(ring, word, sample, hasty, &self.heard, counters) else {
+            if !try_phases(ring, word, sample, hasty, &self.heard, counters, tried) {
                 add(&counters.rejected_by_score, 1);
                 rest = from_phase(rest, sample + 1);
                 continue;
-            };
+            }
             add(&counters.demodulated, 1);
             self.tried_last = word;
             // The neighbours were tried with it.
@@ -321,13 +309,14 @@ impl Demodulator {
             let first = (start + u64::from(sample)).saturating_add_signed(i64::from(tried.phase));
             if tried.outcome.is_accepted() {
                 add(&counters.superseded, ones(rest));
-                return self.accept(first, &tried);
+                self.accept(first, tried);
+                return true;
             }
             if self.tells_refused && tried.outcome.has_parity() {
-                self.refuse(at, first, &tried, counters);
+                self.refuse(at, first, tried, counters);
             }
         }
-        None
+        false
     }
 
     /// Keeps a refused frame for the sink, unless there were too many.
@@ -338,12 +327,9 @@ impl Demodulator {
             add(&counters.withheld, 1);
             return;
         }
-        let Ok(frame) = Frame::from_bytes(received(&tried.bytes)) else {
-            return;
-        };
         add(&counters.handed_on, 1);
         self.refused_until = self.refused_until.max(word) + REFUSED_GAP_WORDS;
-        self.refused = Some((RawFrame::coarse(frame, None, first), first));
+        self.refused = Some((tried.bytes, first));
     }
 
     /// Searches where strong bits began a few words ago, if no preamble was tried there.
@@ -353,22 +339,23 @@ impl Demodulator {
         ring: &SampleRing,
         pairs: Pairs,
         counters: &Counters,
-    ) -> Option<RawFrame> {
+        tried: &mut Tried,
+    ) -> bool {
         let word = self.next as u32;
         let (pair, opposed) = pairs.best();
         if opposed < STRONG {
-            return None;
+            return false;
         }
         if self.strong_last != word.wrapping_sub(STEP_WORDS) {
             self.strong_since = word;
         }
         self.strong_last = word;
-        let tried = self
+        let since = self
             .tried_last
             .wrapping_sub(self.strong_since.wrapping_sub(TRIED_WITHIN));
-        if word.wrapping_sub(self.strong_since) != WAIT_WORDS || tried <= TRIED_WITHIN + WAIT_WORDS
+        if word.wrapping_sub(self.strong_since) != WAIT_WORDS || since <= TRIED_WITHIN + WAIT_WORDS
         {
-            return None;
+            return false;
         }
         add(&counters.candidates, 1);
         add(&counters.demodulated, 1);
@@ -376,7 +363,7 @@ impl Demodulator {
         let from = self.next.saturating_sub(u64::from(WAIT_WORDS + 2));
         let Some(found) = headless::search(ring, from as u32, pair, &self.heard, counters) else {
             add(&counters.no_start, 1);
-            return None;
+            return false;
         };
         let outcome = if found.residual == 0 {
             Outcome::Exact
@@ -386,52 +373,65 @@ impl Demodulator {
         add(&counters.headless, 1);
         count(outcome, counters);
         let first_bit = from * u64::from(SAMPLES_PER_WORD) + u64::from(found.first_bit);
-        let tried = Tried {
+        *tried = Tried {
             outcome,
             phase: 0,
             flips: Flips::NONE,
             bytes: found.bytes,
         };
-        self.accept(
-            first_bit.saturating_sub(u64::from(PREAMBLE_SAMPLES)),
-            &tried,
-        )
+        let first = first_bit.saturating_sub(u64::from(PREAMBLE_SAMPLES));
+        self.accept(first, tried);
+        true
     }
 
     /// A frame whose preamble's first sample is `first`.
-    fn accept(&mut self, first: u64, tried: &Tried) -> Option<RawFrame> {
-        let frame = Frame::from_bytes(received(&tried.bytes)).ok()?;
-        // Its parity is known to fit. The layout of a DF19 with another AF is the military's own.
-        let names_address = tried.bytes[0] >> 3 != 19 || tried.bytes[0] & 7 == 0;
-        if tried.outcome == Outcome::Exact
-            && names_address
-            && let mode_s::Address::Icao(icao) = mode_s::Address::of_aa(&frame)
-        {
-            self.heard.note(icao.0);
+    #[inline(never)]
+    fn accept(&mut self, first: u64, tried: &Tried) {
+        let bytes = &tried.bytes;
+        let proved = match bytes[0] >> 3 {
+            // The layout of a DF19 with another AF is the military's own.
+            19 if bytes[0] & 7 != 0 => 0,
+            // AA of a device that is no transponder may be no ICAO address.
+            18 => match mode_s::Address::of_aa(&Frame::from_long(*bytes)) {
+                mode_s::Address::Icao(icao) => icao.0,
+                mode_s::Address::NonIcao(_) => 0,
+            },
+            _ => aa(bytes),
+        };
+        if tried.outcome == Outcome::Exact {
+            self.heard.note(proved);
         }
-        let bits = received(&tried.bytes).len() as u32 * 8;
+        let bits = received(bytes).len() as u32 * 8;
         let samples = u64::from(PREAMBLE_SAMPLES + BIT_SAMPLES * bits);
         self.free_from = first + samples - TAIL_SAMPLES;
         self.accepted_at = first;
-        Some(RawFrame::coarse(frame, Some(tried.flips), first))
     }
 
-    /// Adds what the other two rings know of a frame just found, whose preamble's first sample is `first`, unless that is too long ago.
+    /// A frame just found, whose preamble's first sample is `first`, with what the other two rings know of it, unless that is too long ago.
     #[inline(never)]
     fn measure(
         &self,
         rings: Rings,
         first: u64,
         written: u64,
-        frame: &mut RawFrame,
+        bytes: &[u8; LONG_BYTES],
+        flips: Option<Flips>,
         counters: &Counters,
-    ) {
+    ) -> RawFrame {
+        let mut frame = RawFrame {
+            frame: Frame::from_long(*bytes),
+            flips,
+            arrival: ticks(first),
+            arrival_parts: 0,
+            arrival_sigma: COARSE_SIGMA,
+            level: None,
+        };
         let first_word = first / u64::from(SAMPLES_PER_WORD);
         if written.saturating_sub(first_word) > MOST_MEASURED_AGE {
             add(&counters.unmeasured, 1);
-            return;
+            return frame;
         }
-        let bytes = frame.frame.bytes();
+        let bytes = received(bytes);
         let arrival = arrival::measure(rings.arrival, &self.second_samples, frame.arrival, bytes);
         let level = level::measure(
             rings.level,
@@ -448,6 +448,7 @@ impl Demodulator {
         } = arrival.corrected(&self.calibration, over_floor);
         frame.level = level;
         (frame.arrival, frame.arrival_parts, frame.arrival_sigma) = (ticks, parts, sigma);
+        frame
     }
 }
 

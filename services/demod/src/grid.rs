@@ -32,13 +32,20 @@ impl<const PERIOD: u32, const STEP: u32, const SHIFT: u32> Grid<PERIOD, STEP, SH
         Self { at, index: 0 }
     }
 
-    /// The last event at or before an instant, and how far behind it that is. An instant before the known event is taken for that event.
+    /// The last event at or before an instant, and how far behind it that is. An instant before the known event is taken for that event; it is less than 2^31 units behind it.
     #[inline(always)]
-    pub(crate) fn last(mut self, instant: u64) -> (u32, u32) {
-        self.follow(instant);
-        let rest = instant.saturating_sub(self.at) as u32;
+    pub(crate) fn last(&self, instant: u64) -> (u32, u32) {
+        let behind = (instant as u32).wrapping_sub(self.at as u32);
+        let mut rest = behind.cast_signed().max(0).cast_unsigned();
+        let mut index = self.index;
+        // The black box keeps the compiler from making a division of it.
+        let step = core::hint::black_box(Self::STEP_UNITS);
+        while rest >= step {
+            rest -= step;
+            index = index.wrapping_add(STEP);
+        }
         let events = (rest * Self::RECIPROCAL) >> SHIFT;
-        (self.index.wrapping_add(events), rest - events * PERIOD)
+        (index.wrapping_add(events), rest - events * PERIOD)
     }
 
     /// Moves the known event to less than a step before an instant.

@@ -58,9 +58,7 @@ pub(crate) fn search(
         let at = SAMPLES_PER_WORD + 2 * pair - back;
         let mut samples = Aligned::new(ring, word, at);
         let mut stream = [0u8; START_BYTES + HEAD_BYTES];
-        for byte in &mut stream {
-            *byte = bits::byte(&mut samples);
-        }
+        bits::read(&mut samples, &mut stream, 0, START_BYTES + HEAD_BYTES);
         let mut head = u32::from_be_bytes([stream[0], stream[1], stream[2], stream[3]]);
         for start in 0..STARTS {
             // DF and CA, then AA.
@@ -88,9 +86,7 @@ pub(crate) fn search(
 fn frame(from: Aligned, counters: &Counters) -> Option<([u8; LONG_BYTES], u32)> {
     let mut samples = from;
     let mut bytes = [0; LONG_BYTES];
-    for byte in &mut bytes {
-        *byte = bits::byte(&mut samples);
-    }
+    bits::read(&mut samples, &mut bytes, 0, LONG_BYTES);
     add(&counters.trials_exact, 1);
     let residual = crc24::residual(received(&bytes));
     let most = if bytes[0] >> 3 == 11 {

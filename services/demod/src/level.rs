@@ -20,8 +20,15 @@ pub const LEVEL_HALF_TICKS: u32 = 545;
 pub const LEVEL_START_HALF_TICKS: u64 = 8;
 
 /// Half ticks of a bit, and of half of one.
-const BIT: i32 = 240;
-const HALF_BIT: i32 = 120;
+const BIT: u32 = 240;
+/// A conversion's place in its bit is counted in fives: a period is two bits and 13 of them, so what is left of a division by five stays the same in a whole frame.
+const GRAIN: u32 = 5;
+const PLACES: usize = (BIT / GRAIN) as usize;
+const HALF_PLACES: u32 = PLACES as u32 / 2;
+const PERIOD_PLACES: usize = ((LEVEL_HALF_TICKS - 2 * BIT) / GRAIN) as usize;
+const _: () = assert!(LEVEL_HALF_TICKS == 2 * BIT + PERIOD_PLACES as u32 * GRAIN);
+/// Places in which a pulse is held, the last of them in part.
+const PLACES_HELD: u32 = (HELD - RISEN).div_ceil(GRAIN);
 /// Half ticks behind a pulse's leading edge from which on the detector has risen, and up to which the shortest pulse holds: 0.45 µs (Annex 10 Volume IV, table 3-2).
 const RISEN: u32 = 60;
 const HELD: u32 = 108;
@@ -31,6 +38,29 @@ const PREAMBLE: u64 = 1920;
 const LEAST: u32 = 2;
 /// Conversions after which no more are asked.
 const ENOUGH: u32 = 4;
+
+/// From each place to the next conversion that may meet a pulse: conversions in bits 0-3, bits in 4-7, the place there from 8 on. Three of five are never looked at.
+static STEPS: [u16; PLACES] = steps();
+
+const fn steps() -> [u16; PLACES] {
+    let mut steps = [0; PLACES];
+    let mut from = 0;
+    while from < PLACES {
+        let (mut conversions, mut place) = (0, from);
+        loop {
+            conversions += 1;
+            place += PERIOD_PLACES;
+            if (place % PLACES % (PLACES / 2)) < PLACES_HELD as usize {
+                break;
+            }
+        }
+        let bits = 2 * conversions + place / PLACES;
+        assert!(conversions < 16 && bits < 16);
+        steps[from] = (conversions | bits << 4 | place % PLACES << 8) as u16;
+        from += 1;
+    }
+    steps
+}
 
 /// The converter's conversions, in half ticks.
 pub(crate) type Conversions = Grid<LEVEL_HALF_TICKS, 32, 24>;
@@ -44,44 +74,51 @@ pub(crate) fn measure(
     arrival: u64,
     frame: &[u8],
 ) -> Option<i16> {
-    let (mut index, past) = conversions.last(2 * arrival + PREAMBLE);
+    let (index, past) = conversions.last(2 * arrival + PREAMBLE);
     let (mut sum, mut count) = (0, 0);
     // How far the next conversion is behind the bit it meets, from RISEN behind the leading edge of a 1 on.
-    index = index.wrapping_add(1);
-    let mut offset = (LEVEL_HALF_TICKS - past) as i32 - RISEN as i32;
-    let mut bit = 0u32;
-    // A period is less than three bits.
-    if offset >= BIT {
-        offset -= BIT;
-        bit += 1;
+    let mut index = index.wrapping_add(1);
+    let mut offset = LEVEL_HALF_TICKS - past + BIT - RISEN;
+    let mut bit = 0u32.wrapping_sub(1);
+    // A period is less than three bits; a loop would become a division.
+    const { assert!(LEVEL_HALF_TICKS + BIT - RISEN < 4 * BIT) };
+    if offset >= 2 * BIT {
+        offset -= 2 * BIT;
+        bit = 1;
     }
     if offset >= BIT {
         offset -= BIT;
-        bit += 1;
+        bit = bit.wrapping_add(1);
     }
+    // In fives, and a rest that stays.
+    let mut place = (offset * 205) >> 10;
+    let held = if offset - place * GRAIN < HELD - RISEN - (PLACES_HELD - 1) * GRAIN {
+        PLACES_HELD
+    } else {
+        PLACES_HELD - 1
+    };
     let bits = frame.len() as u32 * 8;
-    while bit < bits {
-        // Under the pulse of a 1, or under that of a 0.
-        let (since, one) = if offset < HALF_BIT {
-            (offset, 1)
+    loop {
+        // Under the pulse of a 1, or under that of a 0. A conversion before the first bit is behind the last.
+        let (since, one) = if place < HALF_PLACES {
+            (place, 1)
         } else {
-            (offset - HALF_BIT, 0)
+            (place - HALF_PLACES, 0)
         };
-        if (since as u32) < HELD - RISEN && bit_of(frame, bit) == one {
+        if since < held && bit < bits && bit_of(frame, bit) == one {
             sum += ring.code(index) & 0xFFF;
             count += 1;
             if count == ENOUGH {
                 break;
             }
         }
-        index = index.wrapping_add(1);
-        // A period is two bits and 65 half ticks.
-        const { assert!(LEVEL_HALF_TICKS as i32 - 2 * BIT == 65) };
-        bit += 2;
-        offset += LEVEL_HALF_TICKS as i32 - 2 * BIT;
-        if offset >= BIT {
-            offset -= BIT;
-            bit += 1;
+        let step = STEPS.get(place as usize).copied().unwrap_or(0);
+        let step = u32::from(step);
+        index = index.wrapping_add(step & 0xF);
+        bit = bit.wrapping_add(step >> 4 & 0xF);
+        place = step >> 8;
+        if bit.wrapping_add(1) > bits {
+            break;
         }
     }
     (count >= LEAST).then(|| calibration.level(sum, count))
@@ -122,7 +159,8 @@ mod tests {
                 met += u32::from(under);
                 ring.store(index, if under { 1800 } else { 700 });
             }
-            let conversions = Conversions::new(LEVEL_START_HALF_TICKS);
+            let mut conversions = Conversions::new(LEVEL_START_HALF_TICKS);
+            conversions.follow((2 * arrival).saturating_sub(40_000));
             let level = measure(
                 &ring,
                 &conversions,

@@ -28,12 +28,11 @@ const GAPS_FIRST: u32 = 0x0001_FFC0;
 /// Samples 32-63 that belong to gaps: 42-58.
 const GAPS_SECOND: u32 = 0x003F_FFE0;
 
-/// Misses of the half preamble at 32 phases.
+/// Misses of the half preamble at 32 phases: the number's two lowest bits, and whether it is four or more.
 #[derive(Clone, Copy)]
 struct Half {
-    one: u32,
+    odd: u32,
     two: u32,
-    three: u32,
     four: u32,
 }
 
@@ -55,45 +54,64 @@ impl Half {
     #[inline(always)]
     fn of(a: u32, b: u32) -> Self {
         let (not_a, not_b) = (!a, !b);
-        // Eight taps by full adders: a carry is two misses, two carries are four.
-        let (odd, carry) = sum(
+        // Eight taps by full adders: a carry is two misses, and one that meets another is four.
+        let (odd, two) = sum(
             ahead::<1>(not_a, not_b),
             ahead::<3>(not_a, not_b),
             ahead::<9>(not_a, not_b),
         );
-        let two = carry;
         let (odd, carry) = sum(odd, ahead::<11>(not_a, not_b), ahead::<16>(a, b));
-        let (two, four) = (two | carry, two & carry);
+        let (two, four) = (two ^ carry, two & carry);
         let (odd, carry) = sum(odd, ahead::<19>(a, b), ahead::<22>(a, b));
-        let (two, four) = (two | carry, four | two & carry);
+        let (two, four) = (two ^ carry, four | two & carry);
         let last = ahead::<25>(a, b);
         let (odd, carry) = (odd ^ last, odd & last);
-        let (two, four) = (two | carry, four | two & carry);
-        Self {
-            one: odd | two,
-            two,
-            three: four | two & odd,
-            four,
-        }
+        let (two, four) = (two ^ carry, four | two & carry);
+        Self { odd, two, four }
     }
 
     /// Phases of this word at which a whole preamble may start; `next` is the half of the word after it.
     #[inline(always)]
     fn hits(self, next: Self) -> u32 {
-        let one = ahead::<28>(self.one, next.one);
+        let odd = ahead::<28>(self.odd, next.odd);
         let two = ahead::<28>(self.two, next.two);
-        let three = ahead::<28>(self.three, next.three);
         let four = ahead::<28>(self.four, next.four);
-        !(self.four | four | self.three & one | self.two & two | self.one & three)
+        let carry = self.odd & odd;
+        !(self.four | four | self.two & two | carry & (self.two | two))
     }
 }
 
-/// The phases of two words at which a preamble may start.
-#[inline(never)]
-pub(crate) fn hits(ring: &SampleRing, word: u32) -> [u32; 2] {
-    let [a, b, c, d] = [0, 1, 2, 3].map(|ahead| ring.word(word.wrapping_add(ahead)));
-    let middle = Half::of(b, c);
-    [Half::of(a, b).hits(middle), middle.hits(Half::of(c, d))]
+/// Walks over the words, two a step.
+pub(crate) struct Preambles {
+    /// The half of the word behind those asked last, and that word: most steps begin there.
+    next: Half,
+    at: u32,
+}
+
+impl Preambles {
+    pub(crate) const fn new() -> Self {
+        let next = Half {
+            odd: 0,
+            two: 0,
+            four: 0,
+        };
+        // Odd: no step begins there.
+        Self { next, at: u32::MAX }
+    }
+
+    /// The phases of two words at which a preamble may start; the first is even.
+    #[inline(never)]
+    pub(crate) fn hits(&mut self, ring: &SampleRing, word: u32) -> [u32; 2] {
+        let [b, c, d] = [1, 2, 3].map(|ahead| ring.word(word.wrapping_add(ahead)));
+        if self.at != word {
+            self.next = Half::of(ring.word(word), b);
+        }
+        let middle = Half::of(b, c);
+        let first = self.next.hits(middle);
+        self.next = Half::of(c, d);
+        self.at = word.wrapping_add(2);
+        [first, middle.hits(self.next)]
+    }
 }
 
 /// Ones of a word. The core has no instruction for it; a multiplication adds the bytes.
@@ -135,9 +153,9 @@ impl Fits {
     /// The phase that fits best, up to two samples from this one, the earliest of equals: a frame also comes out right a sample or two off.
     pub(crate) fn leading(&self, phase: i32) -> i32 {
         let mut best = (u32::MAX, phase);
-        for near in phase - 2..=phase + 2 {
-            if self.at(near) < best.0 {
-                best = (self.at(near), near);
+        for (near, &off) in (FIRST_FIT..).zip(&self.0) {
+            if near >= phase - 2 && near <= phase + 2 && off < best.0 {
+                best = (off, near);
             }
         }
         best.1

@@ -73,8 +73,11 @@ impl ArrivalRing {
         // Five bits of sample and sixteen of fraction are below the word's.
         const { assert!(ARRIVAL_WORDS == 1 << (32 - 21)) };
         let sample = place << 11 >> 27;
+        if sample > 24 {
+            return None;
+        }
         let word = self.words[place as usize >> 21].load(Ordering::Relaxed);
-        (sample <= 24).then(|| (word << sample >> 24) as u8)
+        Some((word << sample >> 24) as u8)
     }
 }
 

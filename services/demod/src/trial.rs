@@ -66,6 +66,16 @@ pub(crate) enum Outcome {
     Exact,
 }
 
+impl Tried {
+    /// Nothing yet.
+    pub(crate) const NOTHING: Self = Self {
+        outcome: Outcome::NoBits,
+        phase: 0,
+        flips: Flips::NONE,
+        bytes: [0; LONG_BYTES],
+    };
+}
+
 impl Outcome {
     /// Whether a frame came of it.
     pub(crate) fn is_accepted(self) -> bool {
@@ -118,7 +128,7 @@ pub(crate) fn received(bytes: &[u8; LONG_BYTES]) -> &[u8] {
     }
 }
 
-/// The best that a candidate and its neighbours give; in haste only the most certain phase is repaired. `None` when no phase looks like a preamble.
+/// The best that a candidate and its neighbours give, in `tried`; in haste only the most certain phase is repaired. False when no phase looks like a preamble.
 #[inline(never)]
 pub(crate) fn try_phases(
     ring: &SampleRing,
@@ -127,50 +137,44 @@ pub(crate) fn try_phases(
     hasty: bool,
     heard: &Heard,
     counters: &Counters,
-) -> Option<Tried> {
+    tried: &mut Tried,
+) -> bool {
     let most_mismatches = if hasty {
         MOST_MISMATCHES_IN_HASTE
     } else {
         MOST_MISMATCHES
     };
     let fits = Fits::of(from_sample(ring, word, sample.wrapping_sub(1)));
-    let mut likeliest = PHASES[0];
-    for phase in PHASES {
-        if fits.at(phase) < fits.at(likeliest) {
-            likeliest = phase;
-        }
-    }
-    let mut best: Option<Tried> = None;
+    let phases = likeliest_first(&fits);
+    let mut any = false;
     // How certain the phases are that may be repaired, in the order in which they are tried.
-    let mut repairable = [(0, 0); PHASES.len()];
-    let mut bytes = [0; LONG_BYTES];
-    let others = PHASES.into_iter().filter(|&phase| phase != likeliest);
-    let phases = core::iter::once(likeliest).chain(others);
-    for (phase, to_repair) in phases.zip(&mut repairable) {
+    let mut repairable = [0; PHASES.len()];
+    for (&phase, to_repair) in phases.iter().zip(&mut repairable) {
         if fits.at(phase) > most_mismatches {
             continue;
         }
-        let samples = from_sample(ring, word, sample.wrapping_add_signed(phase + PREAMBLE));
-        let (outcome, certainty) = demodulate(samples, heard, counters, &mut bytes);
+        let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase + PREAMBLE));
+        let mut bytes = [0; LONG_BYTES];
+        let (outcome, certainty) = demodulate(&mut samples, heard, counters, &mut bytes);
         if outcome.may_be_repaired() {
-            *to_repair = (certainty, phase);
+            *to_repair = certainty;
         }
-        if best.as_ref().is_none_or(|so_far| outcome > so_far.outcome) {
-            let flips = Flips::NONE;
-            best = Some(Tried {
-                outcome,
-                phase,
-                flips,
-                bytes,
-            });
+        if !any || outcome > tried.outcome {
+            tried.outcome = outcome;
+            tried.phase = phase;
+            tried.bytes = bytes;
+            any = true;
         }
         if outcome == Outcome::Exact {
             break;
         }
     }
-    let tried = best.as_mut()?;
+    if !any {
+        return false;
+    }
+    tried.flips = Flips::NONE;
     while !tried.outcome.is_accepted()
-        && let Some(phase) = most_certain(&mut repairable)
+        && let Some(phase) = most_certain(&phases, &mut repairable)
     {
         let samples = from_sample(ring, word, sample.wrapping_add_signed(phase + PREAMBLE));
         repair(samples, phase, heard, counters, tried);
@@ -179,40 +183,58 @@ pub(crate) fn try_phases(
         }
     }
     tried.phase = fits.leading(tried.phase);
-    best
+    true
+}
+
+/// The phases in the order in which they are tried.
+#[inline(always)]
+fn likeliest_first(fits: &Fits) -> [i32; PHASES.len()] {
+    let mut phases = PHASES;
+    let mut likeliest = 0;
+    for place in 1..PHASES.len() {
+        if fits.at(PHASES[place]) < fits.at(PHASES[likeliest]) {
+            likeliest = place;
+        }
+    }
+    while likeliest > 0 {
+        phases.swap(likeliest, likeliest - 1);
+        likeliest -= 1;
+    }
+    phases
 }
 
 /// Takes the most certain phase out, the first of equals. `None` when none is left.
 #[inline(always)]
-fn most_certain(repairable: &mut [(u32, i32); PHASES.len()]) -> Option<i32> {
-    let mut most = (0, 0);
+fn most_certain(phases: &[i32; PHASES.len()], repairable: &mut [u32; PHASES.len()]) -> Option<i32> {
+    let mut most = 0;
     let mut taken = None;
-    for entry in repairable {
-        if entry.0 > most.0 {
-            most = *entry;
-            taken = Some(entry);
+    for (&phase, certainty) in phases.iter().zip(repairable) {
+        if *certainty > most {
+            most = *certainty;
+            taken = Some((phase, certainty));
         }
     }
-    taken?.0 = 0;
-    Some(most.1)
+    let (phase, certainty) = taken?;
+    *certainty = 0;
+    Some(phase)
 }
 
 /// Demodulates one phase and judges it; gives the certainty of its first 16 bits, too. `from` stands at the first bit.
 #[inline(never)]
 fn demodulate(
-    from: Aligned,
+    samples: &mut Aligned,
     heard: &Heard,
     counters: &Counters,
     bytes: &mut [u8; LONG_BYTES],
 ) -> (Outcome, u32) {
-    let mut samples = from;
-    let (first, first_sure) = bits::byte_and_certainty(&mut samples);
+    let from = *samples;
+    let (first, first_sure) = bits::byte_and_certainty(samples);
     // DF 0, 4, 5, 11, 16 to 21 and 24 to 31 exist.
     const FORMATS: u32 = 0xFF3F_0831;
     if FORMATS >> (first >> 3) & 1 == 0 {
         return (Outcome::BadFormat, 0);
     }
-    let (second, second_sure) = bits::byte_and_certainty(&mut samples);
+    let (second, second_sure) = bits::byte_and_certainty(samples);
     let certainty = first_sure + second_sure;
     if certainty < LEAST_CERTAINTY {
         return (Outcome::NoBits, 0);
@@ -220,9 +242,7 @@ fn demodulate(
     bytes[0] = first;
     bytes[1] = second;
     let length = received(bytes).len();
-    for byte in bytes.get_mut(2..length).unwrap_or_default() {
-        *byte = bits::byte(&mut samples);
-    }
+    bits::read(samples, bytes, 2, length);
     (judge(received(bytes), from, heard, counters), certainty)
 }
 
@@ -262,11 +282,9 @@ fn judge(frame: &[u8], from: Aligned, heard: &Heard, counters: &Counters) -> Out
 fn repair(from: Aligned, phase: i32, heard: &Heard, counters: &Counters, tried: &mut Tried) {
     let mut samples = from;
     let mut bytes = [0; LONG_BYTES];
-    bytes[0] = bits::byte(&mut samples);
+    bits::read(&mut samples, &mut bytes, 0, 1);
     let length = received(&bytes).len();
-    for byte in bytes.get_mut(1..length).unwrap_or_default() {
-        *byte = bits::byte(&mut samples);
-    }
+    bits::read(&mut samples, &mut bytes, 1, length);
     let residual = crc24::residual(received(&bytes));
     let by_address = !matches!(bytes[0] >> 3, 11 | 17 | 18);
     let least = if by_address {
@@ -310,7 +328,7 @@ fn repair(from: Aligned, phase: i32, heard: &Heard, counters: &Counters, tried: 
 
 /// The address in AA.
 #[inline(always)]
-fn aa(frame: &[u8]) -> u32 {
+pub(crate) fn aa(frame: &[u8]) -> u32 {
     match *frame {
         [_, a, b, c, ..] => u32::from_be_bytes([0, a, b, c]),
         _ => 0,

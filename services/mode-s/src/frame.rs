@@ -96,6 +96,15 @@ impl Frame {
         Ok(frame)
     }
 
+    /// Takes as many of these bytes as the first one's downlink format says.
+    #[inline(always)]
+    pub fn from_long(mut bytes: [u8; LONG_BYTES]) -> Frame {
+        if !Df::of_first_byte(bytes[0]).is_long() {
+            bytes[SHORT_BYTES..].fill(0);
+        }
+        Frame { bytes }
+    }
+
     /// The 7 or 14 bytes.
     pub fn bytes(&self) -> &[u8] {
         if self.is_long() {
