@@ -27,7 +27,7 @@ fn frames_back_to_back_are_all_decoded_and_reported() {
     );
     assert_eq!(lost, (0, 0, 0), "{outcome:?}");
     // Core 1 has room; what it would give up first is the arrival.
-    assert!(outcome.load[1] < 0.93, "{outcome:?}");
+    assert!(outcome.load[1] < 0.75, "{outcome:?}");
 }
 
 #[test]

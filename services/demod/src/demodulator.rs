@@ -9,7 +9,7 @@
 //!   strong bits began three words ago and no preamble was tried there ─ `headless` ─► no_start, or a RawFrame
 //! ```
 //! A refused candidate blocks nothing: a stronger frame that starts inside a weaker one is tried when its word comes. Behind an accepted frame the walk goes on
-//! 12 µs before its end, because a stronger preamble may cover the last bits of a frame whose parity still holds. What starts earlier inside it would have destroyed it.
+//! 10 µs before its end (2 µs where frames are back to back), because a stronger preamble may cover the last bits of a frame whose parity still holds. What starts earlier inside it would have destroyed it.
 //!
 //! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 160 µs.
 
@@ -40,8 +40,11 @@ const MOST_BEHIND: u64 = RING_WORDS as u64 * 3 / 4;
 const PREAMBLE_SAMPLES: u32 = 64;
 /// Samples a bit.
 const BIT_SAMPLES: u32 = 8;
-/// Samples before an accepted frame's end at which another may start: 12 µs, a preamble and four bits.
-const TAIL_SAMPLES: u64 = 96;
+/// Samples before an accepted frame's end at which another may start: 10 µs, a preamble and two bits.
+const TAIL_SAMPLES: u64 = 80;
+/// The same behind a frame that began within 160 µs of the one before, 2 µs: near the channel's limit looking at the rest takes a sixth of the core.
+const TAIL_BACK_TO_BACK: u64 = 16;
+const BACK_TO_BACK_SAMPLES: u64 = 1280;
 /// Words behind which a frame is no longer measured, 2.8 ms: the rings of second sampler and converter hold 955 and 1163 of them, and a millisecond is left before what
 /// is measured is overwritten.
 const MOST_MEASURED_AGE: u64 = 700;
@@ -403,7 +406,12 @@ impl Demodulator {
         }
         let bits = received(bytes).len() as u32 * 8;
         let samples = u64::from(PREAMBLE_SAMPLES + BIT_SAMPLES * bits);
-        self.free_from = first + samples - TAIL_SAMPLES;
+        let tail = if first.saturating_sub(self.accepted_at) < BACK_TO_BACK_SAMPLES {
+            TAIL_BACK_TO_BACK
+        } else {
+            TAIL_SAMPLES
+        };
+        self.free_from = first + samples - tail;
         self.accepted_at = first;
     }
 

@@ -126,8 +126,9 @@ pub(crate) fn ones(word: u32) -> u32 {
 #[derive(Clone, Copy)]
 pub(crate) struct Fits([u32; 4]);
 
-/// The first of them.
+/// The first and the last of them.
 const FIRST_FIT: i32 = -1;
+const LAST_FIT: i32 = FIRST_FIT + 3;
 
 impl Fits {
     /// Around a hit; `samples` stands a sample before it.
@@ -151,14 +152,19 @@ impl Fits {
     }
 
     /// The phase that fits best, up to two samples from this one, the earliest of equals: a frame also comes out right a sample or two off.
+    #[inline(always)]
     pub(crate) fn leading(&self, phase: i32) -> i32 {
-        let mut best = (u32::MAX, phase);
-        for (near, &off) in (FIRST_FIT..).zip(&self.0) {
-            if near >= phase - 2 && near <= phase + 2 && off < best.0 {
-                best = (off, near);
+        let first = (phase - 2).max(FIRST_FIT);
+        let last = (phase + 2).min(LAST_FIT);
+        let mut best = first;
+        let mut near = first + 1;
+        while near <= last {
+            if self.at(near) < self.at(best) {
+                best = near;
             }
+            near += 1;
         }
-        best.1
+        best
     }
 }
 

@@ -47,8 +47,18 @@ const LEAST_REPAIRED_QUARTERS: u32 = 5;
 /// Samples of the preamble.
 const PREAMBLE: i32 = 64;
 
+/// How many phases are tried.
+const TRIED: usize = 4;
+
 /// Phases tried around a candidate, the likeliest first: the first hit is early, most frames start a sample or two behind it. The one whose preamble fits best goes before them.
-const PHASES: [i32; 4] = [1, 2, 0, -1];
+/// In fours of bits, a sample more than each phase, the first lowest: a table of so few bytes would be placed in flash.
+const PHASES: u32 = 0x0132;
+
+/// The phase at this place of [`PHASES`]: 1, 2, 0, -1.
+#[inline(always)]
+fn phase_at(place: usize) -> i32 {
+    ((PHASES >> (4 * place)) & 0xF) as i32 - 1
+}
 
 /// What became of a candidate. In rising order of worth: the best of its phases is the candidate's.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -145,37 +155,37 @@ pub(crate) fn try_phases(
         MOST_MISMATCHES
     };
     let fits = Fits::of(from_sample(ring, word, sample.wrapping_sub(1)));
-    let phases = likeliest_first(&fits);
+    let likeliest = likeliest(&fits);
+    tried.flips = Flips::NONE;
     let mut any = false;
     // How certain the phases are that may be repaired, in the order in which they are tried.
-    let mut repairable = [0; PHASES.len()];
-    for (&phase, to_repair) in phases.iter().zip(&mut repairable) {
+    let mut repairable = [0; TRIED];
+    for (place, to_repair) in repairable.iter_mut().enumerate() {
+        let phase = in_order(likeliest, place);
         if fits.at(phase) > most_mismatches {
             continue;
         }
         let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase + PREAMBLE));
         let mut bytes = [0; LONG_BYTES];
         let (outcome, certainty) = demodulate(&mut samples, heard, counters, &mut bytes);
+        if !any || outcome > tried.outcome {
+            (tried.outcome, tried.phase, tried.bytes) = (outcome, phase, bytes);
+            any = true;
+            if outcome == Outcome::Exact {
+                break;
+            }
+        }
         if outcome.may_be_repaired() {
             *to_repair = certainty;
-        }
-        if !any || outcome > tried.outcome {
-            tried.outcome = outcome;
-            tried.phase = phase;
-            tried.bytes = bytes;
-            any = true;
-        }
-        if outcome == Outcome::Exact {
-            break;
         }
     }
     if !any {
         return false;
     }
-    tried.flips = Flips::NONE;
     while !tried.outcome.is_accepted()
-        && let Some(phase) = most_certain(&phases, &mut repairable)
+        && let Some(place) = most_certain(&mut repairable)
     {
+        let phase = in_order(likeliest, place);
         let samples = from_sample(ring, word, sample.wrapping_add_signed(phase + PREAMBLE));
         repair(samples, phase, heard, counters, tried);
         if hasty {
@@ -186,37 +196,43 @@ pub(crate) fn try_phases(
     true
 }
 
-/// The phases in the order in which they are tried.
+/// Which of [`PHASES`] has the preamble that fits best, the first of equals.
 #[inline(always)]
-fn likeliest_first(fits: &Fits) -> [i32; PHASES.len()] {
-    let mut phases = PHASES;
+fn likeliest(fits: &Fits) -> usize {
     let mut likeliest = 0;
-    for place in 1..PHASES.len() {
-        if fits.at(PHASES[place]) < fits.at(PHASES[likeliest]) {
+    for place in 1..TRIED {
+        if fits.at(phase_at(place)) < fits.at(phase_at(likeliest)) {
             likeliest = place;
         }
     }
-    while likeliest > 0 {
-        phases.swap(likeliest, likeliest - 1);
-        likeliest -= 1;
-    }
-    phases
+    likeliest
 }
 
-/// Takes the most certain phase out, the first of equals. `None` when none is left.
+/// The phases in the order in which they are tried: that one, then the others.
 #[inline(always)]
-fn most_certain(phases: &[i32; PHASES.len()], repairable: &mut [u32; PHASES.len()]) -> Option<i32> {
+fn in_order(likeliest: usize, place: usize) -> i32 {
+    let at = match place {
+        0 => likeliest,
+        _ if place <= likeliest => place - 1,
+        _ => place,
+    };
+    phase_at(at)
+}
+
+/// Takes the most certain out, the first of equals. `None` when none is left.
+#[inline(always)]
+fn most_certain(repairable: &mut [u32; TRIED]) -> Option<usize> {
     let mut most = 0;
     let mut taken = None;
-    for (&phase, certainty) in phases.iter().zip(repairable) {
+    for (place, certainty) in repairable.iter_mut().enumerate() {
         if *certainty > most {
             most = *certainty;
-            taken = Some((phase, certainty));
+            taken = Some((place, certainty));
         }
     }
-    let (phase, certainty) = taken?;
+    let (place, certainty) = taken?;
     *certainty = 0;
-    Some(phase)
+    Some(place)
 }
 
 /// Demodulates one phase and judges it; gives the certainty of its first 16 bits, too. `from` stands at the first bit.
