@@ -48,6 +48,12 @@ impl Scene {
         }
     }
 
+    /// A stronger transmission: behind a slicer that follows the level nothing else is seen meanwhile.
+    fn cover(&mut self, start: usize, bytes: &[u8]) {
+        self.samples[start..start + 64 + 64 * bytes.len()].fill(false);
+        self.send(start, bytes);
+    }
+
     /// Flips a share of all samples.
     fn flip(&mut self, share: f64, seed: u64) {
         let mut state = seed;
@@ -153,6 +159,47 @@ fn frames_back_to_back_are_all_heard() {
     let arrivals: Vec<u64> = frames.iter().map(sample).collect();
     let sent: Vec<u64> = (0..20).map(|n| 50 + n * LONG_SAMPLES as u64).collect();
     assert_eq!(arrivals, sent);
+}
+
+/// A DF17 whose last eight bits are these.
+fn df17_that_ends_in(last: u8) -> Vec<u8> {
+    (0..u32::MAX)
+        .map(|n| {
+            let [a, b, c, d] = n.to_be_bytes();
+            with_parity(&[0x8D, 0x4D, 0x20, 0x23, 0x58, 0xB9, 0x83, a, b, c, d], 0)
+        })
+        .find(|frame| frame[13] == last)
+        .expect("one in 256")
+}
+
+/// A preamble over eight bits reads as 1100 0000, four of them without a pulse.
+#[test]
+fn a_stronger_frame_over_the_last_bits_takes_over_and_both_are_heard() {
+    for (last, repaired) in [(0b1100_0000, 0), (0b1110_0000, 1), (0b1100_0011, 2)] {
+        let weaker = df17_that_ends_in(last);
+        for start in 2000..2032 {
+            let mut scene = Scene::silent(6000);
+            scene.send(start, &weaker);
+            scene.cover(start + LONG_SAMPLES - 64, &df17());
+            let (frames, counters) = scene.hear();
+            let heard: Vec<_> = frames.iter().map(|f| f.frame.bytes().to_vec()).collect();
+            assert_eq!(heard, [weaker.clone(), df17()], "{start} {counters:?}");
+            assert_eq!(frames[0].repaired(), repaired);
+            assert_eq!(frames[1].repaired(), 0);
+        }
+    }
+}
+
+#[test]
+fn a_stronger_frame_inside_a_weaker_one_is_heard() {
+    for inside in (64..LONG_SAMPLES - 80).step_by(44) {
+        let mut scene = Scene::silent(6000);
+        scene.send(2000, &df17_that_ends_in(0));
+        scene.cover(2000 + inside, &df17());
+        let (frames, counters) = scene.hear();
+        let heard: Vec<_> = frames.iter().map(|f| f.frame.bytes()).collect();
+        assert_eq!(heard, [df17()], "{inside} {counters:?}");
+    }
 }
 
 #[test]
