@@ -56,7 +56,7 @@ const fn steps() -> [u16; PLACES] {
         }
         let bits = 2 * conversions + place / PLACES;
         assert!(conversions < 16 && bits < 16);
-        steps[from] = (conversions | bits << 4 | place % PLACES << 8) as u16;
+        steps[from] = (conversions | bits << 4 | (place % PLACES) << 8) as u16;
         from += 1;
     }
     steps
