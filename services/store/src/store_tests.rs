@@ -317,3 +317,12 @@ fn a_read_that_fails_once_costs_neither_what_is_stored_nor_the_place_of_the_next
         }
     }
 }
+
+#[test]
+fn a_save_before_any_load_stores_its_own_blob_and_not_the_one_it_finds() {
+    let mut store = Ours::new(Memory::new());
+    assert_eq!(saved(&mut store, b"old one"), Ok(Outcome::Saved));
+    let mut next = Ours::new(store.medium.clone());
+    assert_eq!(saved(&mut next, b"new one"), Ok(Outcome::Saved));
+    assert_eq!(found_anew(&next), Some(b"new one".to_vec()));
+}
