@@ -6,9 +6,13 @@
 //!                     ├─ fix ─▶ Gnss, position of the receiver
 //!                     └─ the sentence itself, for ports that pass it on
 //! ```
+//! Where a sampler's FIFO has overflowed, samples are missing, and the ticks of frames and pulses no longer speak of one time: from then on no pulse is believed and no frame
+//! gets UTC, until the next start.
+//!
 //! Served in every turn of core 0's loop. Pulses come before sentences, so that a sentence finds its second. A sentence's tick is when the loop sees its `$`: at most a
 //! beat (50 ms) late, and sentences begin later behind their second than that.
 
+use core::sync::atomic::{AtomicU32, Ordering};
 use drivers::gnss_pps::PpsStamps;
 use hal::pps_counter::PpsCounter;
 use hal::{timer, uart::GnssUart};
@@ -16,12 +20,12 @@ use mode_s::{CentiDegrees, Position};
 use nmea_0183::{Dimensions, Fix, Reader, Sentence};
 use report::{DAY_MS, FrameTimes, Gnss, Moment};
 use settings::Settings;
-use timebase::{Name, Quality, State, Timebase};
+use timebase::{Arrival, Name, Quality, State, Timebase};
 
 /// From a frame's leading edge at the antenna to the tick that the demodulator calls its arrival, less what a pulse on GNSS_PPS is late in the same count,
 /// nanoseconds. What half a sample and the detector take is already off by level (`demod`); this is the rest, measured on the board's model at 30 dB
 /// (`cargo test -p tests --test time -- --nocapture`: delay); belongs to the board.
-const ANTENNA_TO_TICK_NS: i32 = 1;
+const ANTENNA_TO_TICK_NS: i32 = 3;
 /// Uncertainty of `now`, ticks: a pulse may carry a stamp a little ahead of the microsecond count. A millisecond.
 const AHEAD: u64 = 120_000;
 /// Bytes of GNSS_UART a turn of the loop.
@@ -41,6 +45,9 @@ pub struct Clock {
     began: u64,
     fix: Fix,
     timebase: Timebase,
+    /// Overflows of the samplers' FIFOs, counted by core 1 before it makes frames of what came behind them.
+    overflows: &'static AtomicU32,
+    is_broken: bool,
     /// The baud rate that was asked for last.
     baud: u32,
     /// Microseconds of the timer at tick 0, or a little before.
@@ -52,7 +59,12 @@ pub struct Clock {
 
 impl Clock {
     /// Nothing known yet. `baud` is what GNSS_UART was started with, `start_us` the timer at the first sample.
-    pub fn new(wires: Option<(GnssUart, PpsCounter)>, baud: u32, start_us: u64) -> Self {
+    pub fn new(
+        wires: Option<(GnssUart, PpsCounter)>,
+        baud: u32,
+        start_us: u64,
+        overflows: &'static AtomicU32,
+    ) -> Self {
         Self {
             baud,
             wires,
@@ -61,6 +73,8 @@ impl Clock {
             began: 0,
             fix: Fix::new(),
             timebase: Timebase::new(),
+            overflows,
+            is_broken: false,
             start_us,
             utc_ahead_ms: None,
             refreshed_ms: 0,
@@ -87,11 +101,16 @@ impl Clock {
     /// Takes what has come; gives each whole sentence to `line`. Returns whether more waits.
     pub fn serve(&mut self, mut line: impl FnMut(&[u8])) -> bool {
         let now = self.now();
+        let is_broken = self.look_for_break();
         let Some((uart, pps)) = &mut self.wires else {
             return false;
         };
         uart.serve();
-        pulses(pps, &mut self.stamps, now, |tick| self.timebase.pulse(tick));
+        pulses(pps, &mut self.stamps, now, |tick| {
+            if !is_broken {
+                self.timebase.pulse(tick);
+            }
+        });
         let now_ms = now / (timer::TICKS_PER_US * 1_000);
         if now_ms.saturating_sub(self.refreshed_ms) >= REFRESH_MS {
             self.refresh(now, now_ms);
@@ -121,11 +140,28 @@ impl Clock {
         uart.has_received()
     }
 
-    /// The times of a frame that arrived at this tick.
-    pub fn times(&mut self, arrival: u64) -> FrameTimes {
-        let stamp = self.timebase.stamp(arrival, 0);
+    /// Whether samples were ever lost between the pin and the ring.
+    fn look_for_break(&mut self) -> bool {
+        if !self.is_broken && self.overflows.load(Ordering::Relaxed) != 0 {
+            self.is_broken = true;
+            self.timebase.break_off();
+            self.utc_ahead_ms = None;
+        }
+        self.is_broken
+    }
+
+    /// Whether that was seen.
+    pub fn is_broken(&self) -> bool {
+        self.is_broken
+    }
+
+    /// The times of a frame.
+    pub fn times(&mut self, arrival: Arrival) -> FrameTimes {
+        self.look_for_break();
+        let stamp = self.timebase.stamp(arrival);
         FrameTimes {
-            arrival,
+            // To the nearest tick.
+            arrival: arrival.tick + u64::from(arrival.parts >> 7),
             since_pps_ns: stamp.ts1s_ns,
             utc_second: stamp.second_of_day,
         }
@@ -169,7 +205,7 @@ impl Clock {
 
     /// When the second under way of UTC began, for statuses that tell it.
     pub fn second_began(&mut self) -> FrameTimes {
-        let mut times = self.times(self.now());
+        let mut times = self.times(Arrival::at(self.now()));
         times.since_pps_ns = times.since_pps_ns.map(|_| 0);
         times
     }

@@ -3,7 +3,7 @@
 //! | level | said |
 //! |---|---|
 //! | ERRORS | the crash that led to this start; stored settings that could not be read |
-//! | WARNINGS | stored values that were no good; frames lost between the cores |
+//! | WARNINGS | stored values that were no good; frames lost between the cores; samples lost, so that there is no UTC any more |
 //! | INFO | settings stored; the image confirmed; messages for which a port had no room |
 //!
 //! `LOG_LEVEL` says from which level on. A line stands between whole messages, and never on a port whose protocol is binary.
@@ -22,6 +22,7 @@ use shell::Out;
 #[derive(Default)]
 pub struct Told {
     frames_lost: u32,
+    is_broken: bool,
     is_confirmed: bool,
     /// Messages dropped by CONSOLE and COMMS_UART.
     dropped: [u32; 2],
@@ -76,6 +77,13 @@ impl Receiver {
             self.log(
                 LogLevel::Warnings,
                 format_args!("{news} frames lost, core 0 was late"),
+            );
+        }
+        if self.clock.is_broken() && !self.told.is_broken {
+            self.told.is_broken = true;
+            self.log(
+                LogLevel::Warnings,
+                format_args!("samples lost: no UTC until AT+REBOOT"),
             );
         }
         let dropped = [

@@ -178,7 +178,12 @@ fn start() -> Option<core::convert::Infallible> {
             second_began: FrameTimes::at(0),
         },
         load: Load::new(&SHARED.core1_idle_us),
-        clock: Clock::new(gnss, gnss_baud, capture_start_us),
+        clock: Clock::new(
+            gnss,
+            gnss_baud,
+            capture_start_us,
+            &SHARED.capture.fifo_overflows,
+        ),
         queue: consumer,
         tracker: TRACKER.take()?,
         shared: &SHARED,

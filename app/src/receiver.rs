@@ -34,7 +34,7 @@ use report::{Bits, FrameReport, Moment, Statistics};
 use reporter::{Context, Reporter};
 use settings::Stored;
 use settings::choices::RxSource;
-use timebase::State;
+use timebase::{Arrival, State};
 use tracker::{Heard, RxPosition, Tracker};
 
 /// Aircraft tracked at once.
@@ -213,8 +213,11 @@ impl Receiver {
             (Some(level), Some(floor)) => Some(level.saturating_sub(floor).max(0)),
             _ => None,
         };
-        // To the nearest tick.
-        let arrival = raw_frame.arrival + u64::from(raw_frame.arrival_parts >> 7);
+        let arrival = Arrival {
+            tick: raw_frame.arrival,
+            parts: raw_frame.arrival_parts,
+            sigma: raw_frame.arrival_sigma,
+        };
         FrameReport {
             bits: Bits::ModeS(received),
             level_cdbm: raw_frame.level,

@@ -1,13 +1,15 @@
 //! `squitter fleet`: aircraft heard by receivers at known places, each a Beast stream on its own TCP port, in real time.
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{BufWriter, Write};
 use std::net::{TcpListener, TcpStream};
-use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use twin::fleet::site::{self, Site};
-use twin::fleet::{Fleet, Options, Told};
+use twin::fleet::{Fleet, Options, Sent, Told};
+use twin::source::scene::aircraft::address_of;
 
 use crate::Failure;
 
@@ -21,8 +23,8 @@ pub fn command() -> Command {
         .about("Let receivers at known places hear the same aircraft, each a Beast stream on its own TCP port")
         .long_about(
             "Aircraft fly and squitter; receivers hear them after the time that light takes, each with its own crystal, GNSS pulse and time base (the device's own code), and tell \
-             them as Beast in 12 MHz or GPS stamps, in real time, so that mlat-client and mlat-server can be fed. SCENE is KEY=VALUE,…: aircraft, place, rate (squitters a \
-             second), snr (dB), seed. The file has a line a receiver: name, latitude, longitude, height in metres, port, 12mhz or gps, then offset=PPM, drift=PPM an hour, \
+             them as Beast in 12 MHz or GPS stamps, in real time, so that mlat-client and mlat-server can be fed. SCENE is KEY=VALUE,…: aircraft, silent (how \
+             many of them have no ADS-B), place, speed (knots, of all), rate (transmissions a second), snr (dB), seed. The file has a line a receiver: name, latitude, longitude, height in metres, port, 12mhz or gps, then offset=PPM, drift=PPM an hour, \
              jitter=NS, make=ours|reference. docs/acceptance.md has the steps.",
         )
         .after_help("Example:\n  squitter fleet aircraft=30,place=52.4/13.5 --receivers receivers.txt")
@@ -30,6 +32,7 @@ pub fn command() -> Command {
         .arg(Arg::new("receivers").long("receivers").value_name("FILE").required(true).value_parser(value_parser!(PathBuf)).help("Who hears"))
         .arg(Arg::new("bind").long("bind").value_name("ADDRESS").default_value("127.0.0.1").help("Where the ports are opened"))
         .arg(Arg::new("seconds").long("seconds").value_name("N").value_parser(value_parser!(u64)).help("End after so many [default: never]"))
+        .arg(Arg::new("truth").long("truth").value_name("FILE").value_parser(value_parser!(PathBuf)).help("Write when (Unix time) and where each transmission was sent, as CSV"))
         .arg(Arg::new("quiet").long("quiet").action(ArgAction::SetTrue).help("Do not list the receivers"))
 }
 
@@ -42,6 +45,8 @@ fn scene(text: &str) -> Result<Options, String> {
         let wrong = || format!("`{value}` is no value for `{key}`");
         match key {
             "aircraft" => options.aircraft = value.parse().map_err(|_| wrong())?,
+            "silent" => options.silent = value.parse().map_err(|_| wrong())?,
+            "speed" => options.speed_kt = Some(value.parse().map_err(|_| wrong())?),
             "rate" => options.squitters_a_second = value.parse().map_err(|_| wrong())?,
             "snr" => options.snr_db = value.parse().map_err(|_| wrong())?,
             "seed" => options.seed = value.parse().map_err(|_| wrong())?,
@@ -52,7 +57,7 @@ fn scene(text: &str) -> Result<Options, String> {
             }
             _ => {
                 return Err(format!(
-                    "there is no `{key}`; there are: aircraft, place, rate, snr, seed"
+                    "there is no `{key}`; there are: aircraft, silent, place, speed, rate, snr, seed"
                 ));
             }
         }
@@ -82,13 +87,20 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
             eprintln!("squitter: {} on {bind}:{}", site.name, site.port);
         }
     }
+    let mut truth = match matches.get_one::<PathBuf>("truth") {
+        Some(path) => Some(Truth::create(path)?),
+        None => None,
+    };
     let start = Instant::now();
     let end = matches
         .get_one::<u64>("seconds")
         .copied()
         .unwrap_or(u64::MAX);
     for second in 0..end {
-        let (_, told) = fleet.second();
+        let (sent, told) = fleet.second();
+        if let Some(truth) = &mut truth {
+            truth.write(&sent)?;
+        }
         let mut queues: Vec<_> = told
             .into_iter()
             .map(|messages| messages.into_iter().peekable())
@@ -108,6 +120,56 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
         std::thread::sleep(over.saturating_sub(start.elapsed()));
     }
     Ok(())
+}
+
+/// The file that tells where aircraft were.
+struct Truth {
+    path: String,
+    file: BufWriter<File>,
+    /// Unix time at which the scene began, seconds.
+    began_s: f64,
+}
+
+impl Truth {
+    /// Begins it: the scene begins now.
+    fn create(path: &Path) -> Result<Self, Failure> {
+        let name = path.display().to_string();
+        let file = File::create(path).map_err(|cause| Failure::File {
+            path: name.clone(),
+            cause,
+        })?;
+        let began = SystemTime::now().duration_since(UNIX_EPOCH);
+        let mut truth = Self {
+            path: name,
+            file: BufWriter::new(file),
+            began_s: began.map_or(0.0, |since| since.as_secs_f64()),
+        };
+        truth.line("unix_s,address,latitude,longitude")?;
+        Ok(truth)
+    }
+
+    fn write(&mut self, sent: &[Sent]) -> Result<(), Failure> {
+        for one in sent {
+            let at_s = self.began_s + one.at_ps as f64 / PS_A_SECOND as f64;
+            let address = address_of(one.aircraft);
+            let (latitude, longitude) = (one.latitude, one.longitude);
+            self.line(&format!(
+                "{at_s:.4},{address:06X},{latitude:.7},{longitude:.7}"
+            ))?;
+        }
+        self.file.flush().map_err(|cause| self.failure(cause))
+    }
+
+    fn line(&mut self, line: &str) -> Result<(), Failure> {
+        writeln!(self.file, "{line}").map_err(|cause| self.failure(cause))
+    }
+
+    fn failure(&self, cause: std::io::Error) -> Failure {
+        Failure::File {
+            path: self.path.clone(),
+            cause,
+        }
+    }
 }
 
 /// A port and who reads it.

@@ -27,6 +27,7 @@ Faults (--fault FAULT[=VALUE][@WHEN], may be given again):
   eeprom-absent eeprom-busy eeprom-nack=N eeprom-good
   hang=CORE                 core 0 or 1 executes nothing more until the next reset
   stray=CORE:ADDRESS        the core goes on at ADDRESS (hexadecimal); a HardFault there is the image's own
+  starve-dma=US             no DMA channel has a transfer for US microseconds
   crystal-dead              the crystal stops, or never starts
   no-pps pps no-fix fix no-nmea nmea      the GNSS receiver (--gnss) loses it; has it again
   uart-noise=PORT:RATE      each bit on comms or gnss is wrong with probability RATE; 0 ends it

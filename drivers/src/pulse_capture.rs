@@ -4,7 +4,7 @@
 //!   PULSES ─▶ PIO0 SM0 8 Msps ─▶ FIFO ─▶ DMA ─▶ ring 2048 words = 8.192 ms ─▶ core 1 every 32 words = 128 us
 //! ```
 //! What can be lost and where it shows: core 1 later than a lap is seen by the demodulator, from the count; a FIFO overflow (DMA
-//! starved for 32 us) drops samples before the ring, shifts every later stamp, and is counted here.
+//! starved for 32 us) drops samples before the ring, shifts every later stamp, and is counted here, before anybody is told of words behind it.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 use hal::dma_ring::{DmaChannels, DmaRing, Misplaced};

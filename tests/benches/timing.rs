@@ -1,26 +1,19 @@
 //! Stamps against UTC: the time base alone on many hours of simulated crystals and receivers, then the shipped image in the twin.
 //!
-//! `--hours N`: length of each scene of the first part (4); `--no-device`: the first part alone.
+//! `--hours N`: length of each scene of the first part (4); `--no-device`: the first part alone; `--group NAME`: of the second part one group alone.
 
 use tests::Bench;
-use tests::reception::arrival::{mean, quantile, rms};
+use tests::reception::arrival::mean;
 use tests::timing::campaign::{self, Outcome};
 use tests::timing::crystal::Crystal;
-use tests::timing::device::Device;
+use tests::timing::image_rows::{self, Airs};
 use tests::timing::scene::{self, Scene};
-use twin::board::gnss::Options;
-use twin::chip::crystal::Deviation;
-use twin::source::scene::traffic::{Range, Traffic};
 
 /// Hours of each scene.
 const HOURS: u64 = 4;
-/// Seconds that the device is locked before frames are played to it.
-const LOCKED_S: u64 = 40;
-/// Frames a level.
-const FRAMES: usize = 400;
-/// The levels, dB over the noise in 2 MHz.
-const LEVELS_DB: [f32; 3] = [12.0, 20.0, 30.0];
-const WRONG: &str = "bound exceeded";
+/// How the name of the goal's row of the image ends.
+const STEADY: &str = "PPS 15 ns, 30 dB";
+const WRONG: &str = "exceeded";
 
 fn main() -> std::io::Result<()> {
     if !tests::is_bench() {
@@ -59,17 +52,19 @@ fn main() -> std::io::Result<()> {
         first.get_or_insert(outcome);
     }
     let stable = first.expect("there are scenes");
-    let mut result = format!(
-        "rms_ns={:.1} worst_ns={:.0} bound_violations={} backwards={} wrong_seconds={}",
+    let image = if tests::flag("--no-device") {
+        String::new()
+    } else {
+        device(&mut bench, &mut told)
+    };
+    let result = format!(
+        "rms_ns={:.1} worst_ns={:.0} bound_violations={} backwards={} wrong_seconds={}{image}",
         stable.rms_ns(),
         stable.worst_ns(),
         told.0,
         told.1,
         told.2
     );
-    if !tests::flag("--no-device") {
-        result.push_str(&device(&mut bench));
-    }
     bench.finish(&result)
 }
 
@@ -176,64 +171,25 @@ fn ramps(length_s: u64, ppm_a_second: f64) -> Crystal {
     crystal
 }
 
-/// The image in the twin: each stamp against the scene's truth, and the same less what the time of arrival itself is off.
-fn device(bench: &mut Bench) -> String {
-    let crystal = Deviation {
-        offset_ppb: -20_000,
-        drift_ppb_per_hour: 3_600,
-        ..Deviation::default()
-    };
-    let gnss = Options {
-        jitter: scene::jitter(15.0, 20.833, 1),
-        ..Options::default()
-    };
-    let mut device = Device::start(crystal, gnss);
-    device.run_ms(LOCKED_S * 1000);
+/// The image in the twin: each stamp against the scene's truth.
+fn device(bench: &mut Bench, told: &mut (usize, usize, usize)) -> String {
     bench.line("");
-    bench.line(&format!(
-        "the shipped image in the twin, -20 ppm, 0.001 ppm/s, PPS 15 ns, locked for {LOCKED_S} s; error of each TS24h less the mean at 30 dB; ns"
-    ));
-    bench.line(&format!(
-        "{:<12}{:>8}{:>8}{:>8}{:>8}{:>8}",
-        "level", "frames", "mean", "rms", "99.9 %", "worst"
-    ));
-    let mut all: Vec<(f32, Vec<f64>)> = Vec::new();
-    for (n, level) in (1..).zip(LEVELS_DB) {
-        let traffic = Traffic {
-            seed: n,
-            frames: FRAMES,
-            spacing_ps: 2_000_000_000,
-            jitter_ps: 500_000_000,
-            snr_db: Range::at(level),
-            ..Traffic::default()
-        };
-        let frames = device.play(&traffic.scene());
-        all.push((level, frames.iter().filter_map(|f| f.error_ns()).collect()));
-    }
-    let delay = mean(&all.last().expect("levels").1);
-    let mut at_30 = 0.0;
-    for (level, errors) in &all {
-        let spread: Vec<f64> = errors.iter().map(|e| e - delay).collect();
-        at_30 = rms(&spread);
-        bench.line(&format!(
-            "{:<12}{:>8}{:>8.1}{at_30:>8.1}{:>8.1}{:>8.1}",
-            format!("{level} dB"),
-            spread.len(),
-            mean(errors),
-            quantile(&spread, 0.999),
-            quantile(&spread, 1.0)
-        ));
-        bench.row(format!(
-            "twin {level} dB,{},{at_30:.2},{:.1},{:.1},,,,,,,",
-            spread.len(),
-            quantile(&spread, 0.999),
-            quantile(&spread, 1.0)
-        ));
-    }
-    let state = device.gnss("state").unwrap_or_default();
-    let scatter = device.gnss("scatter_ns").unwrap_or_default();
-    bench.line(&format!(
-        "state {state}, pulses scatter {scatter} ns rms as the device measures"
-    ));
-    format!(" twin_rms_30db_ns={at_30:.1} twin_delay_ns={delay:.1}")
+    bench.line(
+        "the shipped image in the twin, each TS24h against the air's truth; -20 ppm, 0.001 ppm/s, PPS 15 ns, 30 dB unless the row says otherwise; ns",
+    );
+    let mut at_30 = None;
+    let group = tests::option("--group");
+    image_rows::run(&Airs::new(), group.as_deref(), |name, outcome| {
+        line(bench, name, outcome);
+        told.0 += outcome.violations;
+        told.1 += outcome.backwards;
+        told.2 += outcome.wrong_second;
+        if name.ends_with(STEADY) {
+            at_30 = Some((outcome.rms_ns(), mean(&outcome.errors_ns)));
+        }
+    });
+    let Some((rms, mean)) = at_30 else {
+        return String::new();
+    };
+    format!(" image_rms_30db_ns={rms:.1} image_mean_30db_ns={mean:.1}")
 }

@@ -1,11 +1,13 @@
 //! Positions from a fleet's Beast streams alone: what arrived where and when, solved by least squares, against where the aircraft were.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use tests::clients::Client;
 use tests::reception::arrival::quantile;
 use twin::beast_stream::Reader;
-use twin::fleet::earth::{LIGHT_M_S, Place, distance_m, from_degrees};
+use twin::fleet::earth::{LIGHT_M_S, Place, distance_m, from_degrees, through_air_m};
 use twin::fleet::site::{self, Site};
 use twin::fleet::{Fleet, Options, Sent};
+use twin::source::scene::aircraft::address_of;
 
 /// Four receivers around the aircraft, 60 km apart, GPS stamps, crystals as they come.
 const SITES: &str = "\
@@ -17,6 +19,8 @@ const SITES: &str = "\
 const OPTIONS: Options = Options {
     aircraft: 24,
     place: (52.4, 13.5),
+    silent: 0,
+    speed_kt: None,
     squitters_a_second: 60,
     snr_db: 25.0,
     seed: 3,
@@ -66,10 +70,11 @@ fn solve(sites: &[Place], times: &[f64], height_m: f64) -> Option<Place> {
         ];
         let mut normal = [[0.0; 4]; 3];
         for (site, time) in sites.iter().zip(times) {
-            let range = distance_m(*site, at);
+            let way = |place| through_air_m(distance_m(*site, place), height_m);
+            let range = way(at);
             let row = [
-                (distance_m(*site, aside[0]) - range) / step,
-                (distance_m(*site, aside[1]) - range) / step,
+                (way(aside[0]) - range) / step,
+                (way(aside[1]) - range) / step,
                 1.0,
             ];
             let residual = (time - base) * LIGHT_M_S - (range + sent_m);
@@ -161,7 +166,8 @@ fn one_of_ours_against_references_of_another_make_is_within_200_ns() {
     let mut errors = Vec::new();
     for (sent, times) in heard(&mut fleet, 20) {
         for other in 1..4 {
-            let ways = distance_m(places[0], sent.place) - distance_m(places[other], sent.place);
+            let way = |n: usize| through_air_m(distance_m(places[n], sent.place), sent.height_m);
+            let ways = way(0) - way(other);
             errors.push((times[0] - times[other] - ways / LIGHT_M_S) * 1e9);
         }
     }
@@ -172,4 +178,86 @@ fn one_of_ours_against_references_of_another_make_is_within_200_ns() {
         quantile(&errors, 0.5)
     );
     assert!(worst <= 200.0, "{worst}");
+}
+
+#[test]
+fn aircraft_without_ads_b_answer_with_their_address_and_height() {
+    let options = Options {
+        silent: 8,
+        speed_kt: Some(90.0),
+        ..OPTIONS
+    };
+    let sites = site::parse(SITES).expect("sites");
+    let mut fleet = Fleet::new(options, &sites);
+    let mut kinds = std::collections::BTreeSet::new();
+    let mut first: HashMap<usize, Sent> = HashMap::new();
+    for _ in 0..4 {
+        for one in fleet.second().0 {
+            let bytes = one.frame.bytes();
+            let df = bytes[0] >> 3;
+            assert_eq!(df != 17, one.aircraft < 8);
+            if df == 17 {
+                continue;
+            }
+            kinds.insert(df);
+            let address = address_of(one.aircraft);
+            let residual = if df == 11 { 0 } else { address };
+            assert_eq!(one.frame.residual(), residual);
+            if df == 0 || df == 4 {
+                let code = u32::from(bytes[2] & 0x1F) << 8 | u32::from(bytes[3]);
+                // M 0, Q 1: steps of 25 ft in the other eleven bits.
+                assert_eq!(code & 0x50, 0x10);
+                let steps = (code & 0x1F80) >> 2 | (code & 0x20) >> 1 | code & 0xF;
+                let feet = f64::from(steps * 25) - 1_000.0;
+                assert!((feet * 0.3048 - one.height_m).abs() < 1.0, "{feet} ft");
+            }
+            let before = first.entry(one.aircraft).or_insert(one);
+            let metres = distance_m(before.place, one.place);
+            let seconds = (one.at_ps - before.at_ps) as f64 * 1e-12;
+            let expected = 90.0 * 1_852.0 / 3_600.0 * seconds;
+            assert!(
+                (metres - expected).abs() < 1.0 + expected * 0.01,
+                "{metres}"
+            );
+        }
+    }
+    assert_eq!(kinds.into_iter().collect::<Vec<_>>(), [0, 4, 5, 11]);
+}
+
+#[test]
+fn the_streams_arrive_in_dump1090() {
+    let text = SITES.replacen(" gps ", " 12mhz ", 2);
+    let options = Options {
+        silent: 6,
+        ..OPTIONS
+    };
+    let sites = site::parse(&text).expect("sites");
+    let mut fleet = Fleet::new(options, &sites);
+    let mut streams = vec![Vec::new(); sites.len()];
+    let mut frames = Vec::new();
+    for _ in 0..8 {
+        let (sent, told) = fleet.second();
+        // With the address in the clear: the program wants to know an aircraft before it believes an overlaid one.
+        frames.extend(sent.into_iter().filter(|one| one.frame.residual() == 0));
+        for (stream, messages) in streams.iter_mut().zip(told) {
+            stream.extend(messages.into_iter().flat_map(|m| m.bytes));
+        }
+    }
+    for stream in &streams {
+        let understood = Client::Dump1090Beast.read(stream);
+        let came: HashSet<&str> = understood
+            .iter()
+            .filter_map(|told| told["frame"].as_str())
+            .collect();
+        for one in &frames {
+            let hex: String = one
+                .frame
+                .bytes()
+                .iter()
+                .map(|b| format!("{b:02X}"))
+                .collect();
+            assert!(came.contains(hex.as_str()), "{hex} did not arrive");
+        }
+        println!("{} of {} arrived", came.len(), frames.len());
+    }
 }

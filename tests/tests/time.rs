@@ -1,7 +1,7 @@
 //! The shipped image with a GNSS receiver: it locks, stamps, holds over and says so.
 
 use tests::reception::arrival::{mean, rms};
-use tests::timing::device::Device;
+use tests::timing::device::{Air, Device};
 use twin::board::gnss::Options;
 use twin::chip::crystal::Deviation;
 use twin::fault::Fault;
@@ -51,4 +51,34 @@ fn it_locks_and_its_stamps_are_utc() {
     device.run_ms(3_000);
     let frames = device.play(&traffic(8, 20).scene());
     assert!(frames.len() > 15 && frames.iter().all(|f| f.ts1s_ns.is_none()));
+}
+
+#[test]
+fn where_samples_are_lost_frames_get_no_utc_any_more_and_ticks_go_on() {
+    let mut device = Device::start(Deviation::default(), Options::default());
+    device.run_ms(10_000);
+    let air = Air::new(9, 60, 30.0);
+    let stamped = |device: &mut Device| {
+        let frames = device.play_air(&air);
+        assert!(frames.len() > 50, "{} of 60", frames.len());
+        frames.iter().filter(|f| f.ts1s_ns.is_some()).count()
+    };
+    assert!(stamped(&mut device) > 50);
+
+    // The shorter FIFO lasts 15 us.
+    device.carry_out(Fault::StarveDma { us: 12 });
+    device.run_ms(200);
+    assert_eq!(device.gnss("state").as_deref(), Some("LOCKED"));
+    assert!(stamped(&mut device) > 50);
+
+    // Each frame of the air would be stamped 48 us early now.
+    device.carry_out(Fault::StarveDma { us: 80 });
+    assert_eq!(stamped(&mut device), 0);
+    let said = device.ask("AT+LOG_LEVEL=INFO");
+    assert!(said.contains("OK"), "{said}");
+    // Pulses are there and are not believed.
+    device.run_ms(6_000);
+    assert_eq!(device.gnss("state").as_deref(), Some("COARSE"));
+    assert_eq!(device.gnss("utc").map(|utc| utc.len()), Some(12));
+    assert_eq!(stamped(&mut device), 0);
 }

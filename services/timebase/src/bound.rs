@@ -19,7 +19,7 @@ const EXCURSION_S: u64 = EXCURSION_NS / (2 * HALF_RAMP_NS);
 /// A sawtooth of a receiver's 24 MHz clock that hangs at its peak (21 ns), half a tick of ours, and what rounding adds, nanoseconds.
 const FIXED_NS: u64 = 27;
 /// Standard deviations that 99.9 % lie within.
-const DEVIATIONS_X10: u64 = 33;
+pub(crate) const DEVIATIONS_X10: u64 = 33;
 
 /// Stamps of frames are told while the bound is within this: 1 µs, 300 m. Where it is exceeded a receiver is better silent than wrong.
 pub const STAMP_LIMIT_NS: u32 = 1_000;

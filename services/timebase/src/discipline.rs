@@ -11,10 +11,14 @@ use crate::bank::Bank;
 use crate::candidate::Candidate;
 use crate::line::Line;
 use crate::scatter::Scatter;
-use crate::units::{FINE_A_NS, TICKS_A_SECOND};
+use crate::units::{FINE_A_NS, TICKS_A_SECOND, fine_to_ns};
 
 /// Seconds without a pulse after which the bank begins anew: its ramps are stale by then.
 const LONGEST_GAP: u64 = 10;
+/// Of a pulse that surprises nobody.
+const EXPLAINED_SIGMAS: i64 = 3;
+/// How much further than a pulse is off the shortest memory is led astray by it, times 2 (`bank`: 645/256).
+const LED_ASTRAY_X2: i64 = 5;
 /// Standard deviations that a pulse may be off.
 const GATE_SIGMAS: i64 = 6;
 /// Half of the ramp that may begin unseen: 50 ns/s², see `bound`.
@@ -63,6 +67,8 @@ pub(crate) struct Discipline {
     scatter: Scatter,
     candidate: Candidate,
     delay_ns: i32,
+    /// How far a pulse of late was beyond what the scatter explains, fine units, halved each second: a ramp that begins, or a pulse that is off.
+    surprise: i64,
     pub counters: Counters,
 }
 
@@ -74,6 +80,7 @@ impl Discipline {
             scatter: Scatter::new(),
             candidate: Candidate::new(),
             delay_ns: 0,
+            surprise: 0,
             counters: Counters {
                 offered: 0,
                 accepted: 0,
@@ -95,7 +102,8 @@ impl Discipline {
     }
 
     fn set_line(&mut self, bank: Bank, second: u64, doubt_ns: u32) {
-        let line = Line::of(&bank, second, self.scatter.sigma(), doubt_ns);
+        let surprise_ns = fine_to_ns(self.surprise * LED_ASTRAY_X2 / 2) as u32;
+        let line = Line::of(&bank, second, self.scatter.sigma(), doubt_ns, surprise_ns);
         self.line = Some(line.earlier(self.delay_ns));
         self.bank = Some(bank);
     }
@@ -114,11 +122,19 @@ impl Discipline {
         };
         let (mut bank, seconds) = (bank, second.1);
         let gate = GATE_SIGMAS * self.scatter.sigma() + HALF_RAMP * (seconds + 1) * (seconds + 1);
-        if bank.distance(tick) > gate {
+        let distance = bank.distance(tick);
+        if distance > gate {
             count(&mut self.counters.refused);
             return self.candidate(tick, doubt_ns);
         }
         count(&mut self.counters.accepted);
+        // Which of the two it is the next pulses tell; until then the shortest memory follows it, and may be led astray by more than it.
+        let explained = if seconds == 1 {
+            EXPLAINED_SIGMAS * self.scatter.sigma()
+        } else {
+            distance
+        };
+        self.surprise = (self.surprise / 2).max(distance - explained);
         self.candidate.clear();
         self.scatter.pulse(tick, seconds == 1);
         if seconds > 1 {

@@ -40,5 +40,5 @@ pub use bound::{HOLDOVER_LIMIT_NS, STAMP_LIMIT_NS};
 pub use calendar::{Date, day_of};
 pub use discipline::Counters;
 pub use names::Name;
-pub use timebase::{Quality, Stamp, State, Timebase, Utc};
+pub use timebase::{Arrival, Quality, Stamp, State, Timebase, Utc};
 pub use units::TICKS_A_SECOND;

@@ -46,8 +46,14 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// The bank's belief at its present second, which has this number; pulses scatter by `sigma`, and `doubt_ns` more.
-    pub(crate) fn of(bank: &Bank, second: u64, sigma: i64, doubt_ns: u32) -> Self {
+    /// The bank's belief at its present second, which has this number; pulses scatter by `sigma`, and `doubt_ns` more. A pulse of late may have led it astray by `surprise_ns`.
+    pub(crate) fn of(
+        bank: &Bank,
+        second: u64,
+        sigma: i64,
+        doubt_ns: u32,
+        surprise_ns: u32,
+    ) -> Self {
         let filter = bank.believed();
         let drift = filter.drift.clamp(-LARGEST_DRIFT, LARGEST_DRIFT);
         let fine_a_second = ((TICKS_A_SECOND as i64) << FINE_BITS) + filter.rate;
@@ -63,7 +69,7 @@ impl Line {
             rate: filter.rate,
             bound: Bound::new(
                 (fine_to_ns(ahead) as u32).saturating_add(doubt_ns),
-                fine_to_ns(bank.strain(sigma)) as u32,
+                (fine_to_ns(bank.strain(sigma)) as u32).saturating_add(surprise_ns),
                 (fine_to_ns(sigma) as u32).saturating_add(doubt_ns),
             ),
         }
@@ -170,7 +176,7 @@ mod tests {
     fn ticks_become_nanoseconds_near_and_far() {
         for (rate, drift) in [(0, 0), (2_400, 0), (-2_400, 1), (3_000, -12)] {
             let (bank, place) = bank(rate, drift);
-            let line = Line::of(&bank, 100, 4 * crate::units::FINE_A_NS, 0);
+            let line = Line::of(&bank, 100, 4 * crate::units::FINE_A_NS, 0, 0);
             for n in [-2i64, -1, 0, 1, 2, 3, 30] {
                 for share in [0.0, 0.25, 0.999] {
                     let t = n as f64 + share;
@@ -198,7 +204,7 @@ mod tests {
     #[test]
     fn parts_of_a_tick_count() {
         let (bank, _) = bank(0, 0);
-        let line = Line::of(&bank, 0, 1, 0);
+        let line = Line::of(&bank, 0, 1, 0, 0);
         let at = line.moment(line.anchor + 1_200, 0).ns;
         assert_eq!(line.moment(line.anchor + 1_200, 128).ns, at + 4);
         assert_eq!(line.moment(line.anchor + 1_201, 0).ns, at + 8);
@@ -207,7 +213,7 @@ mod tests {
     #[test]
     fn near_and_far_agree_where_they_meet() {
         let (bank, _) = bank(2_400, 5);
-        let line = Line::of(&bank, 10, 1, 0);
+        let line = Line::of(&bank, 10, 1, 0, 0);
         let near = line.near(NEAR - 1, 0).0;
         let far = line.far(NEAR - 1).0;
         assert!((near - far).abs() <= 2, "{near} {far}");

@@ -1,6 +1,6 @@
 //! All of it joined: pulses, names and fix in; stamps, time of day and state out.
 
-use crate::bound::{HOLDOVER_LIMIT_NS, STAMP_LIMIT_NS};
+use crate::bound::{DEVIATIONS_X10, HOLDOVER_LIMIT_NS, STAMP_LIMIT_NS};
 use crate::discipline::{Counters, Discipline, Effect};
 use crate::line::Moment;
 use crate::names::{Name, Names};
@@ -37,6 +37,33 @@ pub enum Quality {
     ThreeDimensions,
 }
 
+/// When a frame came, by the sample clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Arrival {
+    pub tick: u64,
+    /// The rest of it, 1/256 tick.
+    pub parts: u8,
+    /// Its standard uncertainty, 1/256 tick.
+    pub sigma: u16,
+}
+
+impl Arrival {
+    /// Exactly at this tick.
+    pub const fn at(tick: u64) -> Self {
+        Self {
+            tick,
+            parts: 0,
+            sigma: 0,
+        }
+    }
+
+    /// How far it may be off, nanoseconds: 99.9 % of a normal scatter, as everything in [`crate::bound`].
+    fn bound_ns(self) -> u32 {
+        // 25/3 ns a tick.
+        u32::from(self.sigma) * 25 * DEVIATIONS_X10 as u32 / (3 * 256 * 10)
+    }
+}
+
 /// A frame's stamps. A field is `None` where it is not known well enough.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stamp {
@@ -44,7 +71,7 @@ pub struct Stamp {
     pub ts1s_ns: Option<u32>,
     /// Second of the day (86 400 in a leap second); with `ts1s_ns` the whole stamp.
     pub second_of_day: Option<u32>,
-    /// How wrong both may be, nanoseconds; `u32::MAX` without pulses.
+    /// How wrong both may be, the clock and the arrival together, nanoseconds; `u32::MAX` without pulses.
     pub bound_ns: u32,
 }
 
@@ -110,6 +137,18 @@ impl Timebase {
         self.discipline.set_delay_ns(ns);
     }
 
+    /// Frames' ticks and pulses' ticks no longer speak of one time: all that was learned from pulses is forgotten. Nothing is to be told of pulses from now on; sentences
+    /// still give the coarse time.
+    pub fn break_off(&mut self) {
+        let counters = self.discipline.counters;
+        *self = Self {
+            coarse: self.coarse,
+            quality: self.quality,
+            ..Self::new()
+        };
+        self.discipline.counters = counters;
+    }
+
     /// The receiver tells of its fix.
     pub fn set_quality(&mut self, quality: Quality) {
         self.quality = quality;
@@ -144,15 +183,17 @@ impl Timebase {
         }
     }
 
-    /// The stamps of a frame that arrived at this tick and 1/256 tick. A later frame never gets an earlier stamp.
-    pub fn stamp(&mut self, tick: u64, parts: u8) -> Stamp {
+    /// The stamps of a frame. A later frame never gets an earlier stamp.
+    pub fn stamp(&mut self, arrival: Arrival) -> Stamp {
         let Some(line) = self.discipline.line() else {
             return Stamp {
                 bound_ns: u32::MAX,
                 ..Stamp::default()
             };
         };
-        let moment = self.not_backwards(tick, line.moment(tick, parts));
+        let Arrival { tick, parts, .. } = arrival;
+        let mut moment = self.not_backwards(tick, line.moment(tick, parts));
+        moment.bound_ns = moment.bound_ns.saturating_add(arrival.bound_ns());
         if moment.bound_ns > STAMP_LIMIT_NS {
             return Stamp {
                 bound_ns: moment.bound_ns,

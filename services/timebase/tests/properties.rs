@@ -1,7 +1,7 @@
 //! Whatever pulses and names come: no panic, and no later frame gets an earlier stamp.
 
 use proptest::prelude::*;
-use timebase::{Name, Quality, Timebase};
+use timebase::{Arrival, Name, Quality, Timebase};
 
 const S: u64 = timebase::TICKS_A_SECOND;
 
@@ -57,7 +57,7 @@ proptest! {
                 Event::Stamps(step) => {
                     now += step;
                     for later in 0..20 {
-                        let stamp = base.stamp(now + later * 7, 0);
+                        let stamp = base.stamp(Arrival::at(now + later * 7));
                         if let Some(ns) = stamp.ts1s_ns {
                             prop_assert!(ns < 1_000_000_000);
                             let (tick, before) = last.unwrap_or((now, ns));

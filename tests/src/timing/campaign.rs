@@ -1,7 +1,7 @@
 //! The service alone on a scene: its stamps against the truth.
 
 use super::scene::Scene;
-use timebase::{State, Timebase};
+use timebase::{Arrival, State, Timebase};
 use twin::source::random::Random;
 
 /// Stamps asked for a second, at random instants and one just before the next pulse is known.
@@ -128,7 +128,11 @@ fn look(
 ) {
     let (tick, rest) = scene.crystal.ticks(second, share * 1e12);
     let truth_ns = share * 1e9;
-    let stamp = timebase.stamp(tick, (rest * 256.0) as u8);
+    let parts = (rest * 256.0) as u8;
+    let stamp = timebase.stamp(Arrival {
+        parts,
+        ..Arrival::at(tick)
+    });
     let truth = scene.name_of(second);
     if let Some(utc) = timebase.utc(tick) {
         let off = f64::from(utc.ns) - truth_ns;

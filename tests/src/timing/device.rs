@@ -5,20 +5,69 @@
 //!   scene, true time ─ front end ─ PULSES ─┴─ image ─ HEX lines with TS1s and TS24h ─ against the scene's truth
 //! ```
 
-use crate::reception::native::Rendered;
+use crate::reception::arrival::NS_A_PART;
+use crate::reception::native::{self, Rendered};
 use std::collections::HashMap;
 use twin::board::gnss::Options;
 use twin::board::{Board, Setup};
 use twin::chip::crystal::Deviation;
 use twin::chip::flash::Flash;
-use twin::front_end::{FrontEnd, Player};
+use twin::fault::Fault;
+use twin::front_end::{FrontEnd, Player, Slicer};
 use twin::source::scene::Scene;
+use twin::source::scene::traffic::{Range, Traffic};
 
 /// Distance of samples of the air, ps: 125 MHz, as for the time of arrival.
 const STEP_PS: u64 = 8_000;
 /// Time for an answer, ms.
 const ANSWER_MS: u64 = 20;
 const NS_A_DAY: i128 = 86_400_000_000_000;
+const PS_A_SECOND: i128 = 1_000_000_000_000;
+/// Standard deviations in a stated bound.
+const DEVIATIONS: f64 = 3.3;
+
+/// A scene whose waves are worked out once, with the uncertainty that the demodulator states for each frame.
+pub struct Air {
+    scene: Scene,
+    level: Rendered,
+    sigmas_ns: HashMap<Vec<u8>, f64>,
+}
+
+impl Air {
+    /// So many frames in as many milliseconds, at this level over the noise in 2 MHz.
+    pub fn new(seed: u64, frames: usize, snr_db: f32) -> Self {
+        let traffic = Traffic {
+            seed,
+            frames,
+            spacing_ps: 1_000_000_000,
+            jitter_ps: 400_000_000,
+            snr_db: Range::at(snr_db),
+            ..Traffic::default()
+        };
+        Self::of(traffic.scene())
+    }
+
+    /// This scene.
+    pub fn of(scene: Scene) -> Self {
+        let level = Rendered::of(&mut scene.wave(STEP_PS));
+        let trigger_mv = twin::board::pwm_level_mv();
+        let (raw, _) = native::raw_frames(&level, Slicer::RcFollowing, trigger_mv);
+        let sigma = |raw: &demod::RawFrame| {
+            let sigma_ns = f64::from(raw.arrival_sigma) * NS_A_PART;
+            (raw.frame.bytes().to_vec(), sigma_ns)
+        };
+        Self {
+            sigmas_ns: raw.iter().map(sigma).collect(),
+            scene,
+            level,
+        }
+    }
+
+    /// How far a frame's time of arrival may be off by what its demodulator says, nanoseconds; `None` where the host's did not hear it.
+    pub fn arrival_bound_ns(&self, frame: &[u8]) -> Option<f64> {
+        Some(self.sigmas_ns.get(frame)? * DEVIATIONS)
+    }
+}
 
 /// A device with a GNSS receiver.
 pub struct Device {
@@ -34,7 +83,7 @@ pub struct Stamped {
     /// Nanoseconds since the second began, and since midnight.
     pub ts1s_ns: Option<u64>,
     pub ts24h_ns: Option<u64>,
-    /// When it came, nanoseconds since midnight by the scene's truth.
+    /// When it came, nanoseconds since midnight by the scene's truth; in a leap second beyond a day.
     pub truth_ns: f64,
 }
 
@@ -94,9 +143,54 @@ impl Device {
         (!value.is_empty()).then(|| value.to_string())
     }
 
+    /// True time since power-on, ms.
+    pub fn now_ms(&mut self) -> u64 {
+        (self.board.chip.bus.true_ps() / 1_000_000_000) as u64
+    }
+
+    /// Runs until so much true time has gone by since power-on.
+    pub fn run_to_ms(&mut self, ms: u64) {
+        let now_ms = self.now_ms();
+        self.run_ms(ms.saturating_sub(now_ms));
+    }
+
+    /// A copy of the whole at this moment.
+    pub fn fork(&self) -> Self {
+        Self {
+            board: self.board.fork().expect("nothing is being played"),
+            gnss: self.gnss.clone(),
+            text: self.text.clone(),
+        }
+    }
+
+    /// Something happens to the board.
+    pub fn carry_out(&mut self, fault: Fault) {
+        self.board.carry_out(fault).expect("it happens");
+    }
+
+    /// Changes the GNSS receiver's manners.
+    pub fn options(&mut self, change: impl FnOnce(&mut Options)) {
+        change(&mut self.board.gnss().expect("it is fitted").options);
+        self.board.chip.bus.time_surroundings();
+    }
+
+    /// What the device says of its clock's bound.
+    pub fn bound_ns(&mut self) -> Option<f64> {
+        self.gnss("bound_ns")?.parse().ok()
+    }
+
     /// Plays a scene to its end and gives what was reported of its frames.
     pub fn play(&mut self, scene: &Scene) -> Vec<Stamped> {
         let level = Rendered::of(&mut scene.wave(STEP_PS));
+        self.play_level(scene, level)
+    }
+
+    /// The same of air that is there already.
+    pub fn play_air(&mut self, air: &Air) -> Vec<Stamped> {
+        self.play_level(&air.scene, air.level.clone())
+    }
+
+    fn play_level(&mut self, scene: &Scene, level: Rendered) -> Vec<Stamped> {
         let player = Player::new(level, &FrontEnd::ADSBEE_1090);
         self.board.console_read();
         self.text.clear();
@@ -108,8 +202,6 @@ impl Device {
             .filter_map(|e| Some((e.frame()?.bytes(), i128::from(e.arrival_ps()))))
             .collect();
         let first_ps = playback.start_true_ps as i128 - self.gnss.first_second_ps as i128;
-        let midnight = self.gnss.calendar.start_unix_s.div_euclid(86_400) * 86_400;
-        let of_day_ns = i128::from(self.gnss.calendar.start_unix_s - midnight) * 1_000_000_000;
         let mut left = 5;
         while left > 0 {
             self.run_ms(2);
@@ -124,7 +216,11 @@ impl Device {
                 let Some(arrival_ps) = truth.get(bytes.as_slice()) else {
                     continue;
                 };
-                let ps = (first_ps + arrival_ps + of_day_ns * 1000).rem_euclid(NS_A_DAY * 1000);
+                let ps = first_ps + arrival_ps;
+                let name = self.gnss.calendar.name(ps.div_euclid(PS_A_SECOND) as u64);
+                let minutes = i128::from(name.hour) * 60 + i128::from(name.minute);
+                let of_day = minutes * 60 + i128::from(name.second);
+                let ps = of_day * PS_A_SECOND + ps.rem_euclid(PS_A_SECOND);
                 frames.push(Stamped {
                     bytes,
                     ts1s_ns,

@@ -134,6 +134,7 @@ impl Board {
             },
             Fault::Hang { core } => self.chip.hang(core),
             Fault::Stray { core, address } => self.chip.stray(core, address),
+            Fault::StarveDma { us } => self.chip.bus.starve_dma(us),
             Fault::CrystalDead => self.chip.bus.stop_crystal(),
             Fault::Pps(present) => self.gnss_outage(present, |o| &mut o.pps)?,
             Fault::Fix(present) => self.gnss_outage(present, |o| &mut o.fix)?,

@@ -10,6 +10,7 @@
 //! | `eeprom-absent` `eeprom-busy` `eeprom-nack=N` `eeprom-good` | never answers; is busy for ever; refuses byte N of each transfer; as it should |
 //! | `hang=CORE` | the core (0 or 1) executes nothing more until the next reset |
 //! | `stray=CORE:ADDRESS` | the core goes on at ADDRESS (hexadecimal); a HardFault there is the image's own to handle |
+//! | `starve-dma=US` | no DMA channel has a transfer for so many microseconds |
 //! | `crystal-dead` | the crystal stops, or never starts |
 //! | `no-pps` `pps` `no-fix` `fix` `no-nmea` `nmea` | the GNSS receiver loses it; has it again |
 //! | `uart-noise=PORT:RATE` | each bit of `comms` or `gnss` is wrong with probability RATE, both ways; 0 ends it |
@@ -77,6 +78,9 @@ pub enum Fault {
     Stray {
         core: usize,
         address: u32,
+    },
+    StarveDma {
+        us: u64,
     },
     CrystalDead,
     Pps(bool),

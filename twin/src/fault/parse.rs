@@ -76,6 +76,10 @@ fn fault(name: &str, value: Option<&str>) -> Result<Fault, ParseError> {
             .and_then(core)
             .map(|core| Fault::Hang { core })
             .ok_or_else(|| needs("a core, 0 or 1"))?,
+        "starve-dma" => value
+            .and_then(|us| us.parse().ok())
+            .map(|us| Fault::StarveDma { us })
+            .ok_or_else(|| needs("microseconds"))?,
         "stray" => value
             .and_then(stray)
             .ok_or_else(|| needs("CORE:ADDRESS, such as 0:10000000"))?,
@@ -286,6 +290,7 @@ mod tests {
                 When::NOW,
             ),
             ("hang=1", Fault::Hang { core: 1 }, When::NOW),
+            ("starve-dma=80", Fault::StarveDma { us: 80 }, When::NOW),
             (
                 "stray=0:20000001@3s",
                 Fault::Stray {
@@ -310,6 +315,7 @@ mod tests {
             ("power-cut=soon", "milliseconds"),
             ("hang=2", "needs a value"),
             ("stray=1", "needs a value"),
+            ("starve-dma=long", "microseconds"),
             ("usb-unplug=1", "takes no value"),
             ("power-cut@noon", "is no time"),
             ("power-cut@flash:0", "is no time"),

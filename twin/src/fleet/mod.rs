@@ -1,12 +1,13 @@
 //! A fleet of receivers at known places that hear the same aircraft: for multilateration, without hardware.
 //!
 //! ```text
-//!   aircraft ─ squitter, place ─┬─ distance / c ─▶ receiver: arrival ─ its crystal's tick ─ its time base ─ Beast
+//!   aircraft ─ squitter, place ─┬─ way through the air / c ─▶ receiver: arrival ─ its crystal's tick ─ its time base ─ Beast
 //!                               ├─ …                          ▲                    ▲
 //!                               └─ …              error drawn from a pool      own PPS with jitter, own NMEA
 //! ```
 //! What is the device's own code: the time base, and the Beast encoder. The demodulator's error in the time of arrival is drawn from a pool that the native engine gives
-//! at the start on simulated air of the scene's level, so that a fleet costs as much as its messages. Left out: lost frames, overlaps, multipath, refraction.
+//! at the start on simulated air of the scene's level, so that a fleet costs as much as its messages. Left out: lost frames, overlaps, multipath, the bend of the way through
+//! the air.
 //!
 //! | file | what |
 //! |---|---|
@@ -44,6 +45,10 @@ pub struct Options {
     pub aircraft: usize,
     /// Degrees north and east; they fly within two degrees of it.
     pub place: (f64, f64),
+    /// How many of them have no ADS-B: they answer interrogations, and multilateration is what finds them.
+    pub silent: usize,
+    /// Speed of all of them, knots, instead of one drawn for each.
+    pub speed_kt: Option<f64>,
     pub squitters_a_second: u64,
     /// Signal-to-noise ratio of all frames at all receivers, dB.
     pub snr_db: f32,
@@ -55,6 +60,8 @@ impl Default for Options {
         Self {
             aircraft: 20,
             place: (52.4, 13.5),
+            silent: 0,
+            speed_kt: None,
             squitters_a_second: 100,
             snr_db: 25.0,
             seed: 1,
@@ -68,6 +75,10 @@ pub struct Sent {
     /// True time, ps since the scene began.
     pub at_ps: u64,
     pub frame: Frame,
+    /// The aircraft's number, and where it was: degrees north and east, and in space.
+    pub aircraft: usize,
+    pub latitude: f64,
+    pub longitude: f64,
     pub place: Place,
     /// Over the ellipsoid.
     pub height_m: f64,
@@ -99,8 +110,13 @@ impl Fleet {
         let receivers = (1..)
             .zip(sites)
             .map(|(n, site)| Receiver::new(site, options.seed << 8 | n));
+        let mut aircraft =
+            Aircraft::fleet(options.seed, options.aircraft, options.place, LEVELS_DBM);
+        if let Some(speed_kt) = options.speed_kt {
+            aircraft.iter_mut().for_each(|one| one.speed_kt = speed_kt);
+        }
         Self {
-            aircraft: Aircraft::fleet(options.seed, options.aircraft, options.place, LEVELS_DBM),
+            aircraft,
             next: 0,
             receivers: receivers.collect(),
             errors_ps,
@@ -142,11 +158,18 @@ impl Fleet {
             let at_ps = start_ps + n * spacing_ps + late_ps;
             let (latitude, longitude) = one.place(at_ps);
             let height_m = f64::from(one.altitude_ft) * M_A_FOOT;
-            let emission = one.squitter(at_ps);
-            if let Some(frame) = emission.frame() {
+            let frame = if one.number < self.options.silent {
+                Some(one.reply())
+            } else {
+                one.squitter(at_ps).frame().copied()
+            };
+            if let Some(frame) = frame {
                 sent.push(Sent {
                     at_ps,
-                    frame: *frame,
+                    frame,
+                    aircraft: one.number,
+                    latitude,
+                    longitude,
                     place: from_degrees(latitude, longitude, height_m),
                     height_m,
                 });

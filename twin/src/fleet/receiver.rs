@@ -1,6 +1,6 @@
 //! One receiver of a fleet: its crystal, its time base, its Beast stream.
 
-use super::earth::{LIGHT_M_S, Place, distance_m, from_degrees};
+use super::earth::{LIGHT_M_S, Place, distance_m, from_degrees, through_air_m};
 use super::site::Site;
 use super::{Sent, Told};
 use crate::board::gnss::pps::Jitter;
@@ -9,7 +9,7 @@ use crate::source::random::Random;
 use report::beast::{self, Stamp};
 use report::radarcape::{self, Stream};
 use report::{Bits, FrameReport, FrameTimes};
-use timebase::{Name, Timebase};
+use timebase::{Arrival, Name, Timebase};
 
 /// Radio horizon and reach: nothing is heard from beyond, metres.
 const REACH_M: f64 = 400_000.0;
@@ -110,14 +110,17 @@ impl Receiver {
         if distance_m > REACH_M {
             return None;
         }
-        let flight_ps = (distance_m / LIGHT_M_S * 1e12) as u64;
+        let flight_ps = (through_air_m(distance_m, sent.height_m) / LIGHT_M_S * 1e12) as u64;
         let scene_ps = sent.at_ps + flight_ps;
         let true_ps = u128::from(LEAD_S) * PS_A_SECOND + u128::from(scene_ps);
         let times = if self.is_reference {
             self.reference_times(true_ps)
         } else {
             let (tick, parts) = self.ticks(true_ps.saturating_add_signed(error_ps.into()));
-            let stamp = self.timebase.stamp(tick, parts);
+            let stamp = self.timebase.stamp(Arrival {
+                parts,
+                ..Arrival::at(tick)
+            });
             FrameTimes {
                 arrival: tick,
                 since_pps_ns: stamp.ts1s_ns,

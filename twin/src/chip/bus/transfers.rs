@@ -51,6 +51,11 @@ impl Bus {
         }
     }
 
+    /// No channel has a transfer for so long from now on.
+    pub fn starve_dma(&mut self, us: u64) {
+        self.dma_free = self.now + us * u64::from(self.sys_hz) / 1_000_000;
+    }
+
     /// One transfer, and the cycle of the next.
     pub(super) fn move_data(&mut self) {
         if self.now < self.dma_free {

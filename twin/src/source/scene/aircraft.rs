@@ -7,7 +7,7 @@
 //! Positions by CPR and velocities by subtype 1, as "The 1090 Megahertz Riddle" gives them; whole numbers where a receiver sees them, so the same on
 //! every host.
 
-use super::traffic::df17;
+use super::traffic::{df11, df17, surveillance};
 use super::{Content, Emission, Role};
 use crate::front_end::decibel;
 use crate::source::random::Random;
@@ -21,6 +21,8 @@ const KNOTS_A_DEGREE: f64 = 60.0;
 /// Seconds an hour, picoseconds a second.
 const SECONDS_AN_HOUR: f64 = 3600.0;
 const PS_A_SECOND: f64 = 1e12;
+/// Squawk 1200 as its pulses stand in DF5 (A1 and B2 alone).
+const SQUAWK_1200: u16 = 0x0808;
 /// Counts of CPR in a zone of the airborne encoding.
 const CPR_COUNTS: f64 = 131_072.0;
 
@@ -86,6 +88,25 @@ impl Aircraft {
             content: Content::ModeS(self.frame(number, at_ps)),
             role: Role::Wanted,
         }
+    }
+
+    /// What it sends next if it has no ADS-B: DF11, DF4, DF0 and DF5 in turn.
+    pub fn reply(&mut self) -> Frame {
+        let address = address_of(self.number);
+        let number = self.sent % 4;
+        self.sent += 1;
+        match number {
+            0 => df11(address),
+            1 => surveillance(4, address, self.altitude_code()),
+            2 => surveillance(0, address, self.altitude_code()),
+            _ => surveillance(5, address, SQUAWK_1200),
+        }
+    }
+
+    /// AC of 13 bits in steps of 25 ft: the steps' bits around M (0) and Q (1).
+    fn altitude_code(&self) -> u16 {
+        let steps = ((self.altitude_ft + 1000) / 25) as u16;
+        (steps & 0x7E0) << 2 | (steps & 0x10) << 1 | 0x10 | steps & 0xF
     }
 
     fn frame(&self, number: u64, at_ps: u64) -> Frame {

@@ -177,6 +177,16 @@ pub fn df11(address: u32) -> Frame {
     frame(&bytes)
 }
 
+/// A short reply of 13 bits to surveillance, whose parity carries the address: DF0 and DF4 (altitude) or DF5 (identity).
+pub fn surveillance(df: u8, address: u32, field: u16) -> Frame {
+    let mut bytes = [0; 7];
+    bytes[0] = df << 3;
+    bytes[2..4].copy_from_slice(&field.to_be_bytes());
+    let parity = crc24::residual(&bytes) ^ address;
+    bytes[4..].copy_from_slice(&parity.to_be_bytes()[1..]);
+    frame(&bytes)
+}
+
 fn frame(bytes: &[u8]) -> Frame {
     match Frame::from_bytes(bytes) {
         Ok(frame) => frame,
