@@ -217,17 +217,23 @@ fn take(input: &mut Input, receiver: &mut Receiver, port: Name, byte: u8) -> Tak
         return Taken::Byte;
     };
     receiver.commands = receiver.commands.wrapping_add(1);
-    let place = receiver.place(port);
-    let mut reply = Reply::new();
-    let after = answer(line, place, receiver, &mut reply);
-    reply.send(receiver, port);
-    match after {
+    match answer_line(line, receiver, port) {
         After::Done => {}
         After::List(listing) => input.listing = Some(listing),
         After::Event(event, dialect) => receiver.take_event(event, Some((port, dialect))),
         After::Saving(dialect) => return Taken::Saving(dialect),
     }
     Taken::Line
+}
+
+/// Answers a line. Not inlined: a reply is large, and what an event leads to makes replies of its own on the same stack.
+#[inline(never)]
+fn answer_line(line: shell::Input, receiver: &mut Receiver, port: Name) -> After {
+    let place = receiver.place(port);
+    let mut reply = Reply::new();
+    let after = answer(line, place, receiver, &mut reply);
+    reply.send(receiver, port);
+    after
 }
 
 /// Reply lines on their way to a port.
