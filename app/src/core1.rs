@@ -1,19 +1,23 @@
 //! Core 1: from blocks of samples to frames in the queue. Nothing else, for ever, from SRAM alone.
 //!
 //! ```text
-//!   wait (WFI) for 32 words ─▶ demodulate up to the newest word ─▶ queue of 127 frames ─▶ wake core 0 if any
-//!     128 us                     the budget: 15 360 cycles a block       full: dropped, counted
+//!   wait (WFI) for 32 words ─▶ demodulate up to the newest word ─┬▶ queue of 127 frames ──────▶ wake core 0 if any
+//!     128 us                     the budget: 15 360 cycles a block └▶ queue of 31 replies, if a port asks
+//!                                                                     full: dropped, counted
 //!                                while nobody receives: passed over, counted
 //! ```
 //! Everything here, and all it calls, is placed in SRAM by `linker/app.x`; interrupts stay masked.
 
 use core::sync::atomic::{AtomicBool, AtomicI32, AtomicU32, Ordering};
-use demod::{Counters, Demodulator, RING_WORDS, RawFrame, Rings};
+use demod::{Counters, Demodulator, RING_WORDS, RawFrame, Reply, Rings};
 use drivers::pulse_capture::PulseCapture;
 use heapless::spsc::Producer;
 
 /// Slots of the frame queue; it holds one frame less. 127 frames are 15 ms of back-to-back long frames.
 pub const QUEUE_SLOTS: usize = 128;
+
+/// Slots of the queue of Mode A/C replies; it holds one reply less: 0.8 ms at 40 000 a second. A queue of its own, so that they never take a frame's place.
+pub const REPLY_SLOTS: usize = 32;
 
 /// Refused frames enter the queue while fewer frames than this wait: the rest is kept for accepted ones.
 const REFUSED_WAITING: usize = QUEUE_SLOTS / 4;
@@ -30,6 +34,10 @@ pub struct QueueCounters {
     pub refused_queued: AtomicU32,
     /// Refused frames for which there was no room.
     pub refused_dropped: AtomicU32,
+    /// Mode A/C replies handed to core 0, while a port asks.
+    pub replies_queued: AtomicU32,
+    /// Mode A/C replies for which there was no room, while a port asks.
+    pub replies_dropped: AtomicU32,
 }
 
 impl QueueCounters {
@@ -41,6 +49,8 @@ impl QueueCounters {
             dropped: AtomicU32::new(0),
             refused_queued: AtomicU32::new(0),
             refused_dropped: AtomicU32::new(0),
+            replies_queued: AtomicU32::new(0),
+            replies_dropped: AtomicU32::new(0),
         }
     }
 }
@@ -59,7 +69,10 @@ pub struct Context {
     pub unheard_words: &'static AtomicU32,
     /// Whether core 0 wants refused frames, too.
     pub wants_refused: &'static AtomicBool,
+    /// Whether core 0 wants Mode A/C replies; they are searched for and counted anyway.
+    pub wants_replies: &'static AtomicBool,
     pub queue: Producer<'static, RawFrame>,
+    pub replies: Producer<'static, Reply>,
     pub queue_counters: &'static QueueCounters,
     /// Microseconds this core slept.
     pub idle_us: &'static AtomicU32,
@@ -94,7 +107,9 @@ fn block(context: &mut Context) {
         is_receiving,
         unheard_words,
         wants_refused,
+        wants_replies,
         queue,
+        replies,
         queue_counters,
         ..
     } = context;
@@ -104,9 +119,11 @@ fn block(context: &mut Context) {
     }
     demodulator.set_floor(floor_cdbm.load(Ordering::Relaxed) as i16);
     demodulator.tell_refused(wants_refused.load(Ordering::Relaxed));
+    let wants_replies = wants_replies.load(Ordering::Relaxed);
     let mut heard = false;
+    let mut replied = false;
     let mut newest = || capture.written();
-    demodulator.run(*rings, written, demod_counters, &mut newest, &mut |frame| {
+    let mut frame = |frame: RawFrame| {
         heard = true;
         let counters = &**queue_counters;
         let (queued, dropped, has_room) = if frame.is_accepted() {
@@ -125,8 +142,26 @@ fn block(context: &mut Context) {
         } else {
             count(dropped);
         }
-    });
-    if heard {
+    };
+    let mut reply = |reply| {
+        if !wants_replies {
+            return;
+        }
+        replied = true;
+        count(match replies.enqueue(reply) {
+            Ok(()) => &queue_counters.replies_queued,
+            Err(_) => &queue_counters.replies_dropped,
+        });
+    };
+    demodulator.run(
+        *rings,
+        written,
+        demod_counters,
+        &mut newest,
+        &mut frame,
+        &mut reply,
+    );
+    if heard || replied {
         hal::core1::wake_core0();
     }
 }

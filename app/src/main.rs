@@ -43,10 +43,11 @@ use clock::Clock;
 use confirm::{Confirm, Due};
 use console::Inputs;
 use core::sync::atomic::{AtomicBool, AtomicI32, AtomicU32, Ordering};
-use core1::{Context, QUEUE_SLOTS, QueueCounters};
+use core1::{Context, QUEUE_SLOTS, QueueCounters, REPLY_SLOTS};
 use crash::Crash;
 use demod::{
-    ArrivalRing, Calibration, Counters, Demodulator, LevelRing, RawFrame, Rings, SampleRing,
+    ArrivalRing, Calibration, Counters, Demodulator, LevelRing, RawFrame, Reply, ReplyLevels,
+    Rings, SampleRing,
 };
 use drivers::led::Led;
 use drivers::pulse_capture::{CaptureCounters, PulseCapture};
@@ -81,6 +82,7 @@ static RING: SampleRing = SampleRing::new();
 static ARRIVAL_RING: ArrivalRing = ArrivalRing::new();
 static LEVEL_RING: LevelRing = LevelRing::new();
 static QUEUE: TakeOnce<Queue<RawFrame, QUEUE_SLOTS>> = TakeOnce::new(Queue::new());
+static REPLIES: TakeOnce<Queue<Reply, REPLY_SLOTS>> = TakeOnce::new(Queue::new());
 static CORE1: TakeOnce<Option<Context>> = TakeOnce::new(None);
 static TRACKER: TakeOnce<Tracker<AIRCRAFT>> = TakeOnce::new(Tracker::new());
 /// The noise at the antenna, 1/100 dBm: core 0 measures, core 1 uses it.
@@ -88,6 +90,7 @@ static FLOOR_CDBM: AtomicI32 = AtomicI32::new(Calibration::ADSBEE_1090.floor_cdb
 static SHARED: Shared = Shared {
     is_receiving: AtomicBool::new(false),
     wants_refused: AtomicBool::new(false),
+    wants_replies: AtomicBool::new(false),
     capture: CaptureCounters::new(),
     demod: Counters::new(),
     queue: QueueCounters::new(),
@@ -134,6 +137,7 @@ fn start() -> Option<core::convert::Infallible> {
     let gnss_baud = stored.settings.gnss_baud;
     let gnss = parts.gnss.map(|gnss| gnss.start(gnss_baud));
     let (producer, consumer) = QUEUE.take()?.split();
+    let (replies_producer, replies) = REPLIES.take()?.split();
     let capture_start_us = timer::now_us();
     let capture = PulseCapture::start(
         parts.sampler,
@@ -159,7 +163,9 @@ fn start() -> Option<core::convert::Infallible> {
         is_receiving: &SHARED.is_receiving,
         unheard_words: &SHARED.unheard_words,
         wants_refused: &SHARED.wants_refused,
+        wants_replies: &SHARED.wants_replies,
         queue: producer,
+        replies: replies_producer,
         queue_counters: &SHARED.queue,
         idle_us: &SHARED.core1_idle_us,
     });
@@ -185,6 +191,9 @@ fn start() -> Option<core::convert::Infallible> {
             &SHARED.capture.fifo_overflows,
         ),
         queue: consumer,
+        replies,
+        reply_levels: ReplyLevels::new(Calibration::ADSBEE_1090),
+        level_ring: &LEVEL_RING,
         tracker: TRACKER.take()?,
         shared: &SHARED,
         decode: DecodeCounters::default(),
@@ -195,7 +204,7 @@ fn start() -> Option<core::convert::Infallible> {
         second: 0,
         second_ends_us: 1_000_000,
         is_ending_second: false,
-        last: (0, 0),
+        last: (0, 0, 0),
         leave: None,
         states: States::new(settings_trouble.is_some(), is_held),
         version: identity::version(&confirm),
@@ -222,6 +231,8 @@ fn start() -> Option<core::convert::Infallible> {
         wakes.drain();
         timer::acknowledge_alarm();
         let more_frames = receiver.frames(|| led.frame());
+        // Frames go first: replies are taken while no frame waits.
+        let more_replies = !more_frames && receiver.replies();
         let more_reports = receiver.reports();
         let more_bytes = receiver.commands(&mut input) | receiver.listen();
         SHARED
@@ -243,6 +254,9 @@ fn start() -> Option<core::convert::Infallible> {
             SHARED
                 .wants_refused
                 .store(receiver.wants_refused(), Ordering::Relaxed);
+            SHARED
+                .wants_replies
+                .store(receiver.wants_replies(), Ordering::Relaxed);
             led.beat(receiver.shows());
             next_beat_us = next_beat(now_us, capture_start_us);
             let stalled_ms = (now_us - block_seen_us) / 1000;
@@ -253,11 +267,12 @@ fn start() -> Option<core::convert::Infallible> {
             (blocks_seen, block_seen_us) = (blocks, now_us);
             parts.watchdog.feed();
         }
-        if !(more_frames || more_reports || more_bytes) {
+        if !(more_frames || more_replies || more_reports || more_bytes) {
             let look_us = next_beat_us.min(now_us + LOOK_US);
             timer::set_alarm(look_us);
             sleep::unless(|| {
                 receiver.queue.ready()
+                    || receiver.replies.ready()
                     || receiver.comms.port.outlet.0.has_received()
                     || timer::now_us() >= look_us
             });

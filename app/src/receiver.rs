@@ -24,12 +24,12 @@ use crate::stats::{DecodeCounters, Stats};
 use crate::store::{SettingsStore, Trouble};
 use boot_contract::hand_over::{Cause, HandOver};
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use demod::RawFrame;
+use demod::{LevelRing, RawFrame, Reply, ReplyLevels};
 use drivers::pulse_capture::CaptureCounters;
 use hal::board::LED_GPIO;
 use hal::{boot, timer, watchdog};
 use heapless::spsc::Consumer;
-use mode_s::{Frame, Message};
+use mode_s::{Frame, Message, ModeACode};
 use report::{Bits, FrameReport, Moment, Statistics};
 use reporter::{Context, Reporter};
 use settings::Stored;
@@ -46,6 +46,10 @@ const REBOOT_AFTER_US: u64 = 100_000;
 /// Frames a turn of the loop: so that ports are served in between. A turn moves one USB packet of 64 bytes; with many more frames a turn than make a packet,
 /// the console's buffer would fill although the bus is idle whenever core 0 has a backlog.
 const FRAMES_A_TURN: usize = 4;
+/// Standard uncertainty of a reply's arrival, 1/256 of a tick: a sample of the first sampler, 15 ticks / √12.
+const REPLY_SIGMA: u16 = 1_109;
+/// Mode A/C replies a turn.
+const REPLIES_A_TURN: usize = 4;
 /// Aircraft whose second ends in one turn of the loop: about 0.1 ms of core 0. All four hundred at once let the queue of frames overflow.
 const AIRCRAFT_A_TURN: usize = 8;
 
@@ -56,6 +60,8 @@ pub struct Shared {
     pub is_receiving: AtomicBool,
     /// Whether a port wants refused frames: core 1 hands them on.
     pub wants_refused: AtomicBool,
+    /// Whether a port wants Mode A/C replies.
+    pub wants_replies: AtomicBool,
     pub capture: CaptureCounters,
     pub demod: demod::Counters,
     pub queue: QueueCounters,
@@ -78,6 +84,10 @@ pub struct Receiver {
     pub load: Load,
     pub clock: Clock,
     pub queue: Consumer<'static, RawFrame>,
+    pub replies: Consumer<'static, Reply>,
+    /// What a reply's level is measured with.
+    pub reply_levels: ReplyLevels,
+    pub level_ring: &'static LevelRing,
     pub tracker: &'static mut Tracker<AIRCRAFT>,
     pub shared: &'static Shared,
     pub decode: DecodeCounters,
@@ -92,8 +102,8 @@ pub struct Receiver {
     pub second_ends_us: u64,
     /// The tracker has not ended the second that is over; then come its reports.
     pub is_ending_second: bool,
-    /// Counts at the start of the second: demodulated, decoded.
-    pub last: (u32, u32),
+    /// Counts at the start of the second: demodulated, decoded, Mode A/C replies.
+    pub last: (u32, u32, u32),
     /// When to leave, microseconds of the timer, and where to.
     pub leave: Option<(u64, Leave)>,
     pub confirm: Confirm,
@@ -207,12 +217,61 @@ impl Receiver {
         self.comms.frame(&report, false, &context);
     }
 
-    /// What raw outputs tell of a frame whose bits as received are these.
-    fn report<'f>(&mut self, raw_frame: &RawFrame, received: &'f Frame) -> FrameReport<'f> {
-        let quality_cdb = match (raw_frame.level, self.air.floor_cdbm()) {
+    /// Takes Mode A/C replies from their queue. Returns whether more wait.
+    pub fn replies(&mut self) -> bool {
+        if !self.replies.ready() {
+            return false;
+        }
+        let now = self.now();
+        for _ in 0..REPLIES_A_TURN {
+            let Some(reply) = self.replies.dequeue() else {
+                return false;
+            };
+            if self.states.is_receiving && self.stored.settings.rx_enable {
+                self.reply(&reply, now);
+            }
+        }
+        self.replies.ready()
+    }
+
+    fn reply(&mut self, reply: &Reply, now: Moment) {
+        let code = ModeACode::of_id13(reply.pulses);
+        self.tracker.on_mode_ac(code);
+        if !(self.console.wants_mode_ac() || self.comms.wants_mode_ac()) {
+            return;
+        }
+        let words = self.shared.capture.words.load(Ordering::Relaxed);
+        let level_cdbm = self.reply_levels.measure(self.level_ring, words, reply);
+        let quality_cdb = self.quality(level_cdbm);
+        let report = FrameReport {
+            bits: Bits::ModeAc {
+                code,
+                spi: reply.spi,
+            },
+            level_cdbm,
+            quality_cdb,
+            times: self.clock.times(Arrival {
+                tick: reply.arrival,
+                parts: 0,
+                sigma: REPLY_SIGMA,
+            }),
+        };
+        let context = context!(self, now);
+        self.console.frame(&report, true, &context);
+        self.comms.frame(&report, true, &context);
+    }
+
+    /// Level over the noise floor.
+    fn quality(&self, level_cdbm: Option<i16>) -> Option<i16> {
+        match (level_cdbm, self.air.floor_cdbm()) {
             (Some(level), Some(floor)) => Some(level.saturating_sub(floor).max(0)),
             _ => None,
-        };
+        }
+    }
+
+    /// What raw outputs tell of a frame whose bits as received are these.
+    fn report<'f>(&mut self, raw_frame: &RawFrame, received: &'f Frame) -> FrameReport<'f> {
+        let quality_cdb = self.quality(raw_frame.level);
         let arrival = Arrival {
             tick: raw_frame.arrival,
             parts: raw_frame.arrival_parts,
@@ -234,6 +293,11 @@ impl Receiver {
     /// Whether a port wants frames that were refused.
     pub fn wants_refused(&self) -> bool {
         self.console.wants_refused() || self.comms.wants_refused()
+    }
+
+    /// Whether a port wants Mode A/C replies, themselves or counted for each aircraft.
+    pub fn wants_replies(&self) -> bool {
+        self.console.asks_for_mode_ac() || self.comms.asks_for_mode_ac()
     }
 
     /// A look at the air: noise floor and trigger level. Gives the floor, 1/100 dBm.
@@ -282,17 +346,19 @@ impl Receiver {
     #[inline(never)]
     fn begin_reports(&mut self) {
         self.log_second();
-        let demodulated = self.shared.demod.snapshot().demodulated;
+        let demod = self.shared.demod.snapshot();
+        let (demodulated, replies) = (demod.demodulated, demod.replies);
         let statistics = Statistics {
             stamp_clock_hz: self.clock.measured_hz(),
             demodulations: Some(demodulated.wrapping_sub(self.last.0)),
             mode_s_frames: Some(self.decode.offered.wrapping_sub(self.last.1)),
+            mode_ac_frames: Some(replies.wrapping_sub(self.last.2)),
             uptime_s: self.run_s(),
             load_permille: self.load.second(timer::now_us()),
             aircraft: Some(self.tracker.len() as u32),
             ..Statistics::default()
         };
-        self.last = (demodulated, self.decode.offered);
+        self.last = (demodulated, self.decode.offered, replies);
         let now = self.now();
         let context = context!(self, now);
         self.console.second(self.tracker, &context, &statistics);

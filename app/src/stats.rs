@@ -6,6 +6,7 @@
 //!   +STATS=AIR,high_permille=..,crossings=..,.. what the samples look like, trigger level, noise floor
 //!   +STATS=DEMOD,words=..,candidates=..,..      candidates = one outcome each, see services/demod
 //!   +STATS=TRIALS,trials_exact=..,..            parity checks by kind: what chance had
+//!   +STATS=MODE_AC,reply_words=..,brackets=..,..  brackets = no_reply + garbled + phantoms + replies, see services/demod
 //!   +STATS=QUEUE,offered=..,queued=..,dropped=..,..,waiting=..
 //!   +STATS=DECODE,offered=..,exact=..,..
 //!   +STATS=TRACKER,offered=..,born=..,..        see services/tracker
@@ -175,6 +176,7 @@ impl Stats<'_> {
         let demod = self.demod.snapshot();
         out(line("DEMOD", &demod.stages()));
         out(line("TRIALS", &demod.trials()));
+        out(line("MODE_AC", &demod.replies()));
         out(line(
             "QUEUE",
             &[
@@ -183,6 +185,8 @@ impl Stats<'_> {
                 ("dropped", value(&self.queue.dropped)),
                 ("refused_queued", value(&self.queue.refused_queued)),
                 ("refused_dropped", value(&self.queue.refused_dropped)),
+                ("replies_queued", value(&self.queue.replies_queued)),
+                ("replies_dropped", value(&self.queue.replies_dropped)),
                 ("waiting", self.queue_waiting as u32),
             ],
         ));

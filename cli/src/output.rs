@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use clap::builder::PossibleValue;
 use clap::{Arg, ValueEnum};
-use mode_s::{Frame, Message};
+use mode_s::{Frame, Message, ModeACode};
 use report::{Moment, Statistics, beast, csbee};
 use tracker::Tracker;
 
@@ -14,6 +14,8 @@ use crate::json::{self, Tracked};
 const AIRCRAFT: usize = 400;
 /// Counts of the 12 MHz stamp from a frame's first edge to the end of its first 56 bits.
 const STAMP_AFTER_ARRIVAL: u64 = beast::STAMP_AFTER_ARRIVAL_TICKS / beast::TICKS_PER_COUNT;
+/// The same from F1 to F2 of a Mode A/C reply.
+const F2_AFTER_F1: i64 = (beast::F2_AFTER_F1_TICKS / beast::TICKS_PER_COUNT) as i64;
 const COUNTS_PER_MS: u64 = 12_000;
 
 /// `--out`.
@@ -67,6 +69,34 @@ impl Heard {
     /// Nanoseconds from the start of the recording to the frame's first edge.
     fn arrival_ns(&self) -> i64 {
         (self.count - STAMP_AFTER_ARRIVAL as i64) * 250 / 3
+    }
+}
+
+/// A Mode A/C reply with its Beast stamp, counted likewise.
+#[derive(Clone, Copy, Debug)]
+pub struct HeardReply {
+    /// 12 MHz counts from the start of the recording to F2.
+    pub count: i64,
+    pub code: ModeACode,
+    /// The special position identification pulse.
+    pub spi: bool,
+}
+
+impl HeardReply {
+    /// The content of a Beast message.
+    pub fn of_bits(count: i64, bits: [u8; 2]) -> Self {
+        let bits = u16::from_be_bytes(bits);
+        let digits = [bits >> 12, bits >> 8, bits >> 4, bits].map(|digit| digit & 7);
+        Self {
+            count,
+            code: ModeACode(digits.iter().fold(0, |code, digit| code << 3 | digit)),
+            spi: bits & beast::SPI_BIT != 0,
+        }
+    }
+
+    fn bits(&self) -> [u8; 2] {
+        let spi = if self.spi { beast::SPI_BIT } else { 0 };
+        (self.code.pulses() | spi).to_be_bytes()
     }
 }
 
@@ -154,6 +184,28 @@ impl<W: Write> Printer<W> {
                 let object = json::object(&hex, Some(seconds), &message, Some(&tracked));
                 writeln!(self.out, "{object}")
             }
+        }
+    }
+
+    /// Prints a Mode A/C reply; forms that tell aircraft tell none.
+    pub fn reply(&mut self, heard: &HeardReply) -> io::Result<()> {
+        match self.form {
+            Form::Hex => {
+                let ns = (heard.count - F2_AFTER_F1) * 250 / 3;
+                let sign = if ns < 0 { "-" } else { "" };
+                let (s, frac) = (ns.abs() / 1_000_000_000, ns.abs() % 1_000_000_000);
+                writeln!(self.out, "{sign}{s}.{frac:09},{:04o},,0", heard.code.0)
+            }
+            Form::Beast => {
+                let mut buffer = [0; beast::MAX_MESSAGE];
+                let stamp = heard.count.max(0) as u64;
+                let data = heard.bits();
+                match beast::message(b'1', stamp, beast::LEVEL_UNKNOWN, &data, &mut buffer) {
+                    Ok(len) => self.out.write_all(&buffer[..len]),
+                    Err(report::Full) => Ok(()),
+                }
+            }
+            Form::Json | Form::Csbee => Ok(()),
         }
     }
 

@@ -1,9 +1,12 @@
 //! `squitter replay`: a recording through front end and receiver, by the shipped image or by its demodulator alone.
 
+use std::cell::RefCell;
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, Command};
+use demod::{RawFrame, Reply};
+use mode_s::ModeACode;
 use twin::beast_stream::Reader;
 use twin::completed::Completed;
 use twin::front_end::PulseSource;
@@ -12,13 +15,16 @@ use twin::source::PRE_ROLL_PS;
 
 use crate::instruments::{self, Instruments};
 use crate::levels::{Levels, Message};
-use crate::output::{self, Form, Heard, Printer};
+use crate::output::{self, Form, Heard, HeardReply, Printer};
 use crate::{Failure, device, radio};
 
 /// Rate that carries every frame the channel can hold in Beast.
 const BAUD: u32 = 3_000_000;
 /// The device is left running this long after the recording, so that its last second is reported, in milliseconds.
 const TAIL_MS: u64 = 1_200;
+/// How a Beast client asks for Mode A/C replies, and how long until the device has heard it everywhere, ms.
+const ASK_FOR_REPLIES: &[u8] = b"\x1a1J";
+const BEAT_MS: u64 = 60;
 
 /// The subcommand's arguments.
 pub fn command() -> Command {
@@ -41,6 +47,7 @@ pub fn command() -> Command {
                 .help("twin: the firmware image, emulated; native: its demodulator on this computer"),
         )
         .arg(output::argument())
+        .arg(Arg::new("mode-ac").long("mode-ac").action(clap::ArgAction::SetTrue).help("Print Mode A/C replies, too, as four octal digits or Beast; a few milliseconds out of order"))
         .arg(Arg::new("stats").long("stats").action(clap::ArgAction::SetTrue).help("Print the counters of every stage to standard error"))
         .arg(device::profile_argument())
         .args(instruments::arguments())
@@ -57,7 +64,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
         .get_one::<String>("engine")
         .is_some_and(|e| e == "native")
     {
-        by_native(source, &mut printer)?
+        by_native(source, matches.get_flag("mode-ac"), &mut printer)?
     } else {
         by_twin(source, form, matches, &mut printer)?
     };
@@ -70,6 +77,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Failure> {
 
 fn by_native(
     mut source: Box<dyn PulseSource + Send>,
+    tells_replies: bool,
     printer: &mut Printer<impl Write>,
 ) -> Result<String, Failure> {
     let start = output::start_count(0, PRE_ROLL_PS);
@@ -77,8 +85,8 @@ fn by_native(
         trigger_level_mv: Some(twin::board::pwm_level_mv()),
         ..Default::default()
     };
-    let mut failed = None;
-    let counters = native::run(source.as_mut(), options, &mut |raw| {
+    let printing = RefCell::new((printer, None));
+    let mut frame = |raw: RawFrame| {
         // As the device stamps it: from the nearest tick.
         let arrival = raw.arrival + u64::from(raw.arrival_parts >> 7);
         let stamp =
@@ -89,11 +97,26 @@ fn by_native(
             repaired: raw.repaired(),
             level_dbm: raw.level.map(report::whole_decibels),
         };
+        let (printer, failed) = &mut *printing.borrow_mut();
         if failed.is_none() {
-            failed = printer.frame(&heard).err();
+            *failed = printer.frame(&heard).err();
         }
-    });
-    if let Some(error) = failed {
+    };
+    let mut reply = |raw: Reply| {
+        let stamp =
+            (raw.arrival + report::beast::F2_AFTER_F1_TICKS) / report::beast::TICKS_PER_COUNT;
+        let heard = HeardReply {
+            count: stamp as i64 - start,
+            code: ModeACode::of_id13(raw.pulses),
+            spi: raw.spi,
+        };
+        let (printer, failed) = &mut *printing.borrow_mut();
+        if tells_replies && failed.is_none() {
+            *failed = printer.reply(&heard).err();
+        }
+    };
+    let counters = native::run_with_replies(source.as_mut(), options, &mut frame, &mut reply);
+    if let (_, Some(error)) = printing.into_inner() {
         return Err(error.into());
     }
     let fields = |named: &[(&str, u32)]| -> Vec<String> {
@@ -103,9 +126,10 @@ fn by_native(
             .collect()
     };
     Ok(format!(
-        "+STATS=DEMOD,{}\n+STATS=TRIALS,{}\n",
+        "+STATS=DEMOD,{}\n+STATS=TRIALS,{}\n+STATS=MODE_AC,{}\n",
         fields(&counters.stages()).join(","),
-        fields(&counters.trials()).join(",")
+        fields(&counters.trials()).join(","),
+        fields(&counters.replies()).join(",")
     ))
 }
 
@@ -124,6 +148,10 @@ fn by_twin(
         Form::Beast | Form::Json => "NONE",
     };
     device::command(&mut board, &format!("AT+PROTOCOL=CONSOLE,{console}"))?;
+    if matches.get_flag("mode-ac") {
+        board.comms_write(ASK_FOR_REPLIES);
+        board.run_ms(BEAT_MS)?;
+    }
     board.run_ms(5)?;
     board.comms_read();
     board.console_read();
@@ -153,7 +181,14 @@ fn by_twin(
             Form::Beast => printer.bytes(&comms)?,
             Form::Hex | Form::Json => {
                 levels.console(&said);
-                levels.beast(&reader.read(&comms));
+                let messages = reader.read(&comms);
+                levels.beast(&messages);
+                for message in &messages {
+                    if let Ok(bits) = message.bytes.as_slice().try_into() {
+                        let count = message.stamp as i64 - start;
+                        printer.reply(&HeardReply::of_bits(count, bits))?;
+                    }
+                }
                 while let Some((message, level)) = levels.next_of(form) {
                     printer.frame(&heard(&mut completed, &message, level, start))?;
                 }

@@ -1,16 +1,24 @@
 //! The sensitivity table: frames decoded of 150 in every simulated scene, native engine, each slicer. `--save` renews the committed file, against which
 //! `tests/tests/sensitivity.rs` holds a few of its rows.
 //!
+//! `--replies`: the Mode A/C rows alone.
+//!
 //! `--genie`: instead, just above the noise, where frames are lost and what could be decoded at best (`tests::reception::genie`); `--floor DB` is the height of a standing trigger
 //! level over the noise, `--rc-over MV` moves the following one.
 
 use tests::Bench;
 use tests::reception::native::FLOOR_OVER_NOISE_DB;
-use tests::reception::{genie, table};
+use tests::reception::{genie, mode_ac, table};
 
 fn main() -> std::io::Result<()> {
     if !tests::is_bench() {
         return Ok(());
+    }
+    if tests::flag("--replies") {
+        // Alone, and not to be saved: the table is whole or not at all.
+        let mut bench = Bench::new("sensitivity-replies", "row");
+        replies(&mut bench);
+        return bench.finish("replies alone");
     }
     if std::env::args().any(|argument| argument == "--genie") {
         return at_best();
@@ -28,7 +36,18 @@ fn main() -> std::io::Result<()> {
         bench.row(row);
         points += 1;
     }
+    replies(&mut bench);
     bench.finish(&format!("points={points} frames={}", table::FRAMES))
+}
+
+fn replies(bench: &mut Bench) {
+    bench.line("");
+    bench.line("Mode A/C replies by slicer: share decoded of all, of those 12 dB or more over the noise (clear), of these that nothing overlaps (alone); told with another code, and of nobody, a second");
+    bench.line(&mode_ac::heading());
+    for row in mode_ac::rows() {
+        bench.line(&row);
+        bench.row(row);
+    }
 }
 
 /// Ratios at which the genie is asked, by the names of their points.

@@ -6,7 +6,7 @@
 use crate::front_end::{PulseSource, edge_tick, rssi_mv};
 use demod::{
     ARRIVAL_TICKS_PER_SAMPLE, ArrivalRing, Calibration, Counters, CountersSnapshot, Demodulator,
-    LEVEL_HALF_TICKS, LEVEL_START_HALF_TICKS, LOOKAHEAD_WORDS, LevelRing, RawFrame, Rings,
+    LEVEL_HALF_TICKS, LEVEL_START_HALF_TICKS, LOOKAHEAD_WORDS, LevelRing, RawFrame, Reply, Rings,
     SampleRing, TICKS_PER_SAMPLE,
 };
 
@@ -46,6 +46,16 @@ pub fn run(
     source: &mut dyn PulseSource,
     options: Options,
     sink: &mut dyn FnMut(RawFrame),
+) -> CountersSnapshot {
+    run_with_replies(source, options, sink, &mut |_| {})
+}
+
+/// The same with Mode A/C replies.
+pub fn run_with_replies(
+    source: &mut dyn PulseSource,
+    options: Options,
+    sink: &mut dyn FnMut(RawFrame),
+    replies: &mut dyn FnMut(Reply),
 ) -> CountersSnapshot {
     let (ring, arrival_ring) = (Box::new(SampleRing::new()), Box::new(ArrivalRing::new()));
     let level_ring = Box::new(LevelRing::new());
@@ -87,9 +97,9 @@ pub fn run(
         second.sample_before(edge_tick(until_ps));
         converter.convert_before(2 * edge_tick(until_ps), source, &level_ring);
         let words = sampler.words();
-        demodulator.run(rings, words, &counters, &mut || words, &mut |frame| {
-            sink(frame)
-        });
+        let mut newest = || words;
+        let (mut frame, mut reply) = (|frame| sink(frame), |reply| replies(reply));
+        demodulator.run(rings, words, &counters, &mut newest, &mut frame, &mut reply);
     }
     counters.snapshot()
 }

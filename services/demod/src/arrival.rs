@@ -115,7 +115,7 @@ const AN_EDGE: u32 = 1 << 16;
 
 /// Low samples of a window of eight that shows an edge, low before and high behind; 0 for any other.
 static LOWS: [u8; 256] = lows();
-/// 4096 over a number of edges: the core has no division.
+/// 4096 over a number of edges, from [`LEAST_EDGES`] on: the core has no division.
 static SHARES: [u16; MOST_EDGES as usize + 1] = shares();
 
 const fn lows() -> [u8; 256] {
@@ -132,7 +132,7 @@ const fn lows() -> [u8; 256] {
 
 const fn shares() -> [u16; MOST_EDGES as usize + 1] {
     let mut table = [0; MOST_EDGES as usize + 1];
-    let mut edges = 1;
+    let mut edges = LEAST_EDGES as usize;
     while edges < table.len() {
         table[edges] = (4096 / edges) as u16;
         edges += 1;

@@ -15,6 +15,8 @@
 //! | `trials_repair` | 2^24; those that fitted are `repairs_fitting` | an address heard, or (DF17, 18) certain bits and fields with assigned values |
 //! | `trials_address_repair` | 2^24 / addresses heard | certain bits, fields with assigned values |
 //!
+//! Mode A/C replies have counters of their own: brackets = no_reply + garbled + phantoms + replies, but for up to four that wait.
+//!
 //! The core has no atomic add; with a single writer a load and a store are one.
 
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -23,19 +25,20 @@ macro_rules! counters {
     (
         stages: { $($(#[$doc:meta])* $name:ident,)* }
         trials: { $($(#[$trial_doc:meta])* $trial:ident,)* }
+        replies: { $($(#[$reply_doc:meta])* $reply:ident,)* }
     ) => {
         /// The counters, shared between the cores.
         #[derive(Debug)]
-        pub struct Counters { $($(#[$doc])* pub $name: AtomicU32,)* $($(#[$trial_doc])* pub $trial: AtomicU32,)* }
+        pub struct Counters { $($(#[$doc])* pub $name: AtomicU32,)* $($(#[$trial_doc])* pub $trial: AtomicU32,)* $($(#[$reply_doc])* pub $reply: AtomicU32,)* }
 
         /// The counters at one moment.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-        pub struct CountersSnapshot { $($(#[$doc])* pub $name: u32,)* $($(#[$trial_doc])* pub $trial: u32,)* }
+        pub struct CountersSnapshot { $($(#[$doc])* pub $name: u32,)* $($(#[$trial_doc])* pub $trial: u32,)* $($(#[$reply_doc])* pub $reply: u32,)* }
 
         impl Counters {
             /// All zero.
             pub const fn new() -> Self {
-                Self { $($name: AtomicU32::new(0),)* $($trial: AtomicU32::new(0),)* }
+                Self { $($name: AtomicU32::new(0),)* $($trial: AtomicU32::new(0),)* $($reply: AtomicU32::new(0),)* }
             }
 
             /// Reads them all. Taken by another core while the demodulator runs, the sums may be off by what is under way.
@@ -43,6 +46,7 @@ macro_rules! counters {
                 CountersSnapshot {
                     $($name: self.$name.load(Ordering::Relaxed),)*
                     $($trial: self.$trial.load(Ordering::Relaxed),)*
+                    $($reply: self.$reply.load(Ordering::Relaxed),)*
                 }
             }
         }
@@ -56,6 +60,11 @@ macro_rules! counters {
             /// Every count of parity checks with its name.
             pub fn trials(&self) -> [(&'static str, u32); [$(stringify!($trial)),*].len()] {
                 [$((stringify!($trial), self.$trial)),*]
+            }
+
+            /// Every counter of the search for Mode A/C replies with its name.
+            pub fn replies(&self) -> [(&'static str, u32); [$(stringify!($reply)),*].len()] {
+                [$((stringify!($reply), self.$reply)),*]
             }
         }
     };
@@ -124,6 +133,22 @@ trials: {
     /// Address parities checked with a bit flipped.
     trials_address_repair,
 }
+replies: {
+    /// Sample words searched for Mode A/C replies. Those that are in neither of these two counters lie in accepted frames, or so near that a reply would reach into one.
+    reply_words,
+    /// Sample words not searched because the core was behind.
+    reply_words_late,
+    /// Pulses with another 20.3 us later.
+    brackets,
+    /// Of these: samples between them as of noise, or of Mode S.
+    no_reply,
+    /// A pulse of doubtful width, one where a reply has none, or another bracket on the same places.
+    garbled,
+    /// Made of two pulses of a reply that was read.
+    phantoms,
+    /// Read.
+    replies,
+}
 }
 
 impl CountersSnapshot {
@@ -134,6 +159,11 @@ impl CountersSnapshot {
             + self.accepted_address
             + self.accepted_repaired
             + self.accepted_address_repaired
+    }
+
+    /// Whether every bracket has exactly one outcome, once none waits.
+    pub fn replies_balance(&self) -> bool {
+        self.brackets == self.no_reply + self.garbled + self.phantoms + self.replies
     }
 
     /// Whether every candidate has exactly one outcome.

@@ -11,6 +11,8 @@
 //! A refused candidate blocks nothing: a stronger frame that starts inside a weaker one is tried when its word comes. Behind an accepted frame the walk goes on
 //! 10 µs before its end (2 µs where frames are back to back), because a stronger preamble may cover the last bits of a frame whose parity still holds. What starts earlier inside it would have destroyed it.
 //!
+//! Mode A/C replies are looked for behind the walk, in words that no accepted frame covers (`mode_ac`), and only when the core is not behind: Mode S goes first.
+//!
 //! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 160 µs.
 
 use crate::arrival::{self, Arrival, COARSE_SIGMA, Samples};
@@ -20,6 +22,7 @@ use crate::gate::{Gate, Pairs, REACH, STEER_WORDS, STEP_WORDS};
 use crate::headless::{self, STRONG, WAIT_WORDS};
 use crate::heard::Heard;
 use crate::level::{self, Conversions, LEVEL_START_HALF_TICKS};
+use crate::mode_ac::{Replies, Reply, WORDS_BEFORE, WORDS_BEHIND};
 use crate::preamble::{Preambles, ones};
 use crate::repair::Flips;
 use crate::ring::{RING_WORDS, Rings, SampleRing};
@@ -35,6 +38,9 @@ const _: () = assert!(LOOKAHEAD_WORDS > REACH);
 
 /// Words the writer may be ahead before the oldest are given up. The rest of the ring is what the writer may fill while a call works off this backlog.
 const MOST_BEHIND: u64 = RING_WORDS as u64 * 3 / 4;
+
+/// The same before words are no longer searched for Mode A/C replies: what is always there, a block, and a block more.
+const MOST_BEHIND_FOR_REPLIES: u64 = LOOKAHEAD_WORDS as u64 + 2 * 32;
 
 /// Samples from the preamble's start to the first bit: 8 µs.
 const PREAMBLE_SAMPLES: u32 = 64;
@@ -121,6 +127,7 @@ pub struct Demodulator {
     heard: Heard,
     gate: Gate,
     preambles: Preambles,
+    replies: Replies,
     /// Where strong bits began, the last word that had them, and the last word at which a preamble was tried.
     strong_since: u32,
     strong_last: u32,
@@ -145,6 +152,7 @@ impl Demodulator {
             heard: Heard::new(),
             gate: Gate::new(),
             preambles: Preambles::new(),
+            replies: Replies::new(),
             strong_since: 0,
             strong_last: u32::MAX,
             tried_last: u32::MAX,
@@ -171,11 +179,12 @@ impl Demodulator {
         let to = written.max(self.next) & !1;
         let passed = (to - self.next) as u32;
         self.next = to;
+        self.replies.skip(to);
         passed
     }
 
     /// Works off the rings up to `written` words since the start of capture, and gives each frame to `sink`. `newest` tells how many words there are by
-    /// then: a long backlog takes its time, in which the smaller rings go on.
+    /// then: a long backlog takes its time, in which the smaller rings go on. Mode A/C replies go to `replies`, later than frames of the same time.
     #[inline]
     pub fn run(
         &mut self,
@@ -184,6 +193,7 @@ impl Demodulator {
         counters: &Counters,
         newest: &mut impl FnMut() -> u64,
         sink: &mut impl FnMut(RawFrame),
+        replies: &mut impl FnMut(Reply),
     ) {
         if written.saturating_sub(self.next) > MOST_BEHIND {
             self.skip(written, counters);
@@ -196,6 +206,8 @@ impl Demodulator {
         self.conversions.follow(2 * now);
         let ring = rings.samples;
         let mut tried = Tried::NOTHING;
+        // Mode S goes first: what has come since the last call is more than a call brings where time is short.
+        let is_behind = written.saturating_sub(self.next) > MOST_BEHIND_FOR_REPLIES;
         while let Some(pairs) = self.find(ring, written, counters) {
             let accepted = self.examine(ring, pairs, counters, &mut tried);
             if let Some((bytes, first)) = self.refused.take() {
@@ -204,7 +216,47 @@ impl Demodulator {
             if accepted {
                 let (first, flips) = (self.accepted_at, Some(tried.flips));
                 sink(self.measure(rings, first, newest(), &tried.bytes, flips, counters));
+                self.pass_frame(ring, is_behind, counters, replies);
             }
+        }
+        let known = self.next * u64::from(SAMPLES_PER_WORD);
+        self.search_replies(ring, known, is_behind, counters, replies);
+    }
+
+    /// Searches for Mode A/C replies before the frame just accepted, and steps over it. Frames back to back leave nothing to search.
+    #[inline(always)]
+    fn pass_frame(
+        &mut self,
+        ring: &SampleRing,
+        is_behind: bool,
+        counters: &Counters,
+        sink: &mut impl FnMut(Reply),
+    ) {
+        if self.accepted_at / u64::from(SAMPLES_PER_WORD) > self.replies.next() {
+            self.search_replies(ring, self.accepted_at, is_behind, counters, sink);
+        }
+        let end = (self.free_from + TAIL_SAMPLES) / u64::from(SAMPLES_PER_WORD);
+        self.replies.skip(end + u64::from(WORDS_BEFORE + 1));
+    }
+
+    /// Searches for Mode A/C replies that end before this sample, if there is time.
+    #[inline(never)]
+    fn search_replies(
+        &mut self,
+        ring: &SampleRing,
+        sample: u64,
+        is_behind: bool,
+        counters: &Counters,
+        sink: &mut impl FnMut(Reply),
+    ) {
+        let end = (sample / u64::from(SAMPLES_PER_WORD)).saturating_sub(u64::from(WORDS_BEHIND));
+        if end <= self.replies.next() {
+            return;
+        }
+        if is_behind {
+            add(&counters.reply_words_late, self.replies.skip(end));
+        } else {
+            self.replies.search(ring, end, counters, sink);
         }
     }
 
@@ -498,7 +550,7 @@ fn from_phase(hits: u32, sample: u32) -> u32 {
 
 /// The phase of the first hit; there is one. The core has no instruction to count leading zeros, and the library's is not in SRAM.
 #[inline(always)]
-fn first_phase(hits: u32) -> u32 {
+pub(crate) fn first_phase(hits: u32) -> u32 {
     let mut rest = hits;
     let mut phase = 0;
     while rest >> 24 == 0 {

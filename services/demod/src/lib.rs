@@ -1,4 +1,4 @@
-//! From one-bit samples to Mode S frames.
+//! From one-bit samples to Mode S frames and Mode A/C replies.
 //!
 //! The comparator's level is sampled 8 000 000 times a second, so a Mode S bit (1 µs) is eight samples: one byte, when aligned.
 //! What comes in is a ring of 32-sample words; what goes out is [`RawFrame`]s whose parity fits. This crate knows no clock and no
@@ -14,6 +14,8 @@
 //!  ring ─ gate (bits behind this word?) ─ preamble (at which of 32 phases?) ─ trial (four phases exactly, then repair) ─ RawFrame
 //!                                       └ none, but strong bits ─ headless
 //! ```
+//!
+//! Between frames, and when there is time, the same samples are searched for Mode A/C replies (`mode_ac`).
 //!
 //! An accepted frame gets its time of arrival from a second sampler's ring (`arrival`) and its level from the converter's (`level`).
 //!
@@ -31,9 +33,11 @@ mod grid;
 mod headless;
 mod heard;
 mod level;
+mod mode_ac;
 mod plausible;
 mod preamble;
 mod repair;
+mod reply_level;
 mod ring;
 mod trial;
 
@@ -42,7 +46,9 @@ pub use calibration::Calibration;
 pub use counters::{Counters, CountersSnapshot};
 pub use demodulator::{Demodulator, LOOKAHEAD_WORDS, RawFrame};
 pub use level::{LEVEL_HALF_TICKS, LEVEL_START_HALF_TICKS};
+pub use mode_ac::Reply;
 pub use repair::Flips;
+pub use reply_level::ReplyLevels;
 pub use ring::{ARRIVAL_WORDS, ArrivalRing, LEVEL_WORDS, LevelRing, RING_WORDS, Rings, SampleRing};
 
 /// System clock cycles (120 MHz) a sample (8 MHz).

@@ -87,9 +87,14 @@ impl Scene {
             }
             if written % 32 == 0 {
                 let written = written as u64;
-                demodulator.run(rings, written, &counters, &mut || written, &mut |f| {
-                    frames.push(f)
-                });
+                demodulator.run(
+                    rings,
+                    written,
+                    &counters,
+                    &mut || written,
+                    &mut |f| frames.push(f),
+                    &mut |_| {},
+                );
             }
         }
         let counters = counters.snapshot();
@@ -238,6 +243,7 @@ fn an_address_is_forgotten_after_a_minute() {
                     &counters,
                     &mut || written,
                     &mut |_| heard += 1,
+                    &mut |_| {},
                 );
             }
         }
@@ -256,6 +262,7 @@ fn an_address_is_forgotten_after_a_minute() {
             &counters,
             &mut || written,
             &mut |_| heard += 1,
+            &mut |_| {},
         );
     }
     // 56 s after the exact frame it is known, 62 s after it is not.
@@ -359,12 +366,14 @@ fn a_lapped_ring_is_counted_and_left_behind() {
         &counters,
         &mut || 10_000_000_000,
         &mut |_| {},
+        &mut |_| {},
     );
     demodulator.run(
         rings(&ring),
         10_000_000_000 + 5 * RING_WORDS as u64,
         &counters,
         &mut || u64::MAX >> 8,
+        &mut |_| {},
         &mut |_| {},
     );
     let counters = counters.snapshot();

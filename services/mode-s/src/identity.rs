@@ -11,7 +11,7 @@ pub struct ModeACode(pub u16);
 
 impl ModeACode {
     /// The code of a 13-bit identity field.
-    pub(crate) fn of_id13(id: u16) -> ModeACode {
+    pub fn of_id13(id: u16) -> ModeACode {
         // A4 A2 A1, B4 B2 B1, C4 C2 C1, D4 D2 D1 by their place in ID13, least significant bit 0.
         const ORDER: [u32; 12] = [7, 9, 11, 1, 3, 5, 8, 10, 12, 0, 2, 4];
         ModeACode(ORDER.iter().fold(0, |code, &bit| code << 1 | id >> bit & 1))

@@ -28,9 +28,11 @@ pub const TICKS_PER_COUNT: u64 = 10;
 /// From the arrival (leading edge of the preamble) to the end of the first 56 bits: 64 µs in ticks of 120 MHz.
 pub const STAMP_AFTER_ARRIVAL_TICKS: u64 = (8 + 56) * 120;
 /// From F1 to F2 of a Mode A/C reply: 20.3 µs in ticks of 120 MHz.
-const F2_AFTER_F1_TICKS: u64 = 2_436;
+pub const F2_AFTER_F1_TICKS: u64 = 2_436;
 /// The same in nanoseconds.
 const F2_AFTER_F1_NS: u32 = 20_300;
+/// The bit of a reply that tells the special position identification pulse: free in the format, and where readers of the dump1090 family look for it.
+pub const SPI_BIT: u16 = 0x80;
 /// Preamble and bits of a short frame, ns.
 const SHORT_NS: u32 = 64_000;
 /// Preamble and bits of a long frame, ns.
@@ -52,10 +54,14 @@ pub enum Stamp {
 
 /// One frame.
 pub fn frame(report: &FrameReport<'_>, stamp: Stamp, out: &mut [u8]) -> Result<usize, Full> {
+    let reply;
     let (kind, data): (u8, &[u8]) = match report.bits {
         Bits::ModeS(frame) if frame.is_long() => (b'3', frame.bytes()),
         Bits::ModeS(frame) => (b'2', frame.bytes()),
-        Bits::ModeAc(code) => (b'1', &code.pulses().to_be_bytes()),
+        Bits::ModeAc { code, spi } => {
+            reply = (code.pulses() | if spi { SPI_BIT } else { 0 }).to_be_bytes();
+            (b'1', &reply)
+        }
     };
     let stamp = match stamp {
         Stamp::Count12Mhz => count(&report.times, kind),

@@ -87,12 +87,23 @@ fn gps_stamps_name_the_end_of_the_frame_and_carry_across_midnight() {
 #[test]
 fn mode_ac_is_two_bytes_of_pulses_stamped_at_f2() {
     let report = FrameReport {
-        bits: Bits::ModeAc(ModeACode(0o7363)),
+        bits: Bits::ModeAc {
+            code: ModeACode(0o7363),
+            spi: false,
+        },
         level_cdbm: Some(-4_980),
         ..FrameReport::of_frame(&Frame::from_bytes(&[0x28; 7]).unwrap(), 1_200)
     };
     let expected = (b'1', (1_200 + 2_436) / 10, 26, [0x73, 0x63].to_vec());
     assert_eq!(sent(&report, Stamp::Count12Mhz), expected);
+    let identified = FrameReport {
+        bits: Bits::ModeAc {
+            code: ModeACode(0o7363),
+            spi: true,
+        },
+        ..report
+    };
+    assert_eq!(sent(&identified, Stamp::Count12Mhz).3, [0x73, 0xE3]);
 }
 
 #[test]

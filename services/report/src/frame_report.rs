@@ -21,7 +21,11 @@ pub enum Bits<'a> {
     /// A Mode S frame, its bits as received.
     ModeS(&'a Frame),
     /// A Mode A or Mode C reply: nobody can tell which.
-    ModeAc(ModeACode),
+    ModeAc {
+        code: ModeACode,
+        /// The special position identification pulse.
+        spi: bool,
+    },
 }
 
 /// When a frame arrived.

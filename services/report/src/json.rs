@@ -91,7 +91,7 @@ pub fn raw(
         text.bytes(b"[[\"")?;
         match report.bits {
             Bits::ModeS(frame) => text.hex_bytes(frame.bytes())?,
-            Bits::ModeAc(code) => text.octal4(code)?,
+            Bits::ModeAc { code, .. } => text.octal4(code)?,
         }
         text.byte(b'"')?;
         for value in [report.level_cdbm, report.quality_cdb] {

@@ -61,7 +61,7 @@ fn digits(line: &mut Text<'_>, report: &FrameReport<'_>) -> Result<(), Full> {
     line.byte(b'*')?;
     match report.bits {
         Bits::ModeS(frame) => line.hex_bytes(frame.bytes())?,
-        Bits::ModeAc(code) => line.octal4(code)?,
+        Bits::ModeAc { code, .. } => line.octal4(code)?,
     }
     line.byte(b';')
 }
@@ -110,7 +110,10 @@ mod tests {
     fn mode_ac_is_four_octal_digits() {
         let frame = Frame::from_bytes(&[0x28; 7]).unwrap();
         let report = FrameReport {
-            bits: Bits::ModeAc(ModeACode(0o0363)),
+            bits: Bits::ModeAc {
+                code: ModeACode(0o0363),
+                spi: true,
+            },
             ..FrameReport::of_frame(&frame, 0)
         };
         assert_eq!(lines(&report).1, "*0363;\r\n");

@@ -156,9 +156,19 @@ impl<O: Outlet> Reporter<O> {
         self.is_running && (self.carried.raw != Raw::None || self.tells_raw_json())
     }
 
-    /// Whether Mode A/C replies are wanted. A Beast sends them when its client says so; the others always.
+    /// Whether Mode A/C replies are wanted. A Beast sends them when its client says so; the others where all is wanted whose parity proves nothing, since a reply
+    /// has no parity.
     pub fn wants_mode_ac(&self) -> bool {
-        self.tells_frames() && (self.carried.raw != Raw::Beast || self.asked_mode_ac)
+        let asked = match self.carried.raw {
+            Raw::Beast => self.asked_mode_ac,
+            _ => self.raw_filter == RawFilter::All,
+        };
+        self.tells_frames() && asked
+    }
+
+    /// Whether anybody here asks for replies: for themselves, or for an aircraft's ACFPS.
+    pub fn asks_for_mode_ac(&self) -> bool {
+        self.wants_mode_ac() || self.is_running && self.carried.decoded == Decoded::Csbee
     }
 
     /// Whether demodulated frames are wanted that were not accepted.
@@ -170,8 +180,14 @@ impl<O: Outlet> Reporter<O> {
     pub fn frame(&mut self, report: &FrameReport<'_>, is_accepted: bool, context: &Context<'_>) {
         if !self.tells_frames()
             || !is_accepted && self.raw_filter == RawFilter::Accepted
-            || matches!(report.bits, Bits::ModeAc(_)) && !self.wants_mode_ac()
+            || matches!(report.bits, Bits::ModeAc { .. }) && !self.wants_mode_ac()
         {
+            return;
+        }
+        // As aircraft do, replies leave what waits short: frames of Mode S come behind it.
+        if matches!(report.bits, Bits::ModeAc { .. }) && self.port.room(Kind::Aircraft) < MAX_FRAME
+        {
+            self.port.dropped_unmade(Kind::Frame, 1);
             return;
         }
         if self.carried.raw != Raw::None {

@@ -390,7 +390,10 @@ fn a_beast_client_asks_for_mode_ac() {
     sky.settings.console.raw = settings::choices::Raw::Beast;
     sky.reporter.apply(&sky.settings);
     let reply = report::FrameReport {
-        bits: report::Bits::ModeAc(mode_s::ModeACode(0o7700)),
+        bits: report::Bits::ModeAc {
+            code: mode_s::ModeACode(0o7700),
+            spi: false,
+        },
         ..report::FrameReport::of_frame(&all_call(5), 0)
     };
     let sent = |sky: &mut Sky| {
@@ -410,4 +413,24 @@ fn a_beast_client_asks_for_mode_ac() {
             .all(|&byte| sky.reporter.heard(byte).is_none())
     );
     assert_eq!(sent(&mut sky), 0);
+}
+
+#[test]
+fn text_tells_mode_ac_where_all_is_asked_for() {
+    let mut sky = Sky::new(Decoded::None, Reporting::EverySecond, 4_096);
+    sky.settings.console.raw = settings::choices::Raw::Hex;
+    sky.reporter.apply(&sky.settings);
+    let reply = report::FrameReport {
+        bits: report::Bits::ModeAc {
+            code: mode_s::ModeACode(0o7700),
+            spi: false,
+        },
+        ..report::FrameReport::of_frame(&all_call(5), 0)
+    };
+    sky.reporter.frame(&reply, true, &context(0));
+    assert!(sky.reporter.port.outlet.waiting.is_empty());
+    sky.settings.raw_filter = settings::choices::RawFilter::All;
+    sky.reporter.apply(&sky.settings);
+    sky.reporter.frame(&reply, true, &context(0));
+    assert!(sky.reporter.port.outlet.waiting.starts_with(b"*7700;("));
 }

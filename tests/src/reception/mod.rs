@@ -8,6 +8,7 @@
 //! | `native` | a scene or recording through a slicer and the native engine |
 //! | `device` | the same through the shipped image in the twin |
 //! | `limit` | long frames back to back |
+//! | `mode_ac` | Mode A/C replies against a scene's truth |
 //! | `mutability` | Debian's dump1090-mutability on the same samples |
 //! | `nothing` | air in which nobody sends, for what is invented |
 //! | `points` | the simulated scenes, and what the prototype study measured on such |
@@ -20,6 +21,7 @@ pub mod device;
 pub mod fair;
 pub mod genie;
 pub mod limit;
+pub mod mode_ac;
 pub mod mutability;
 pub mod native;
 pub mod nothing;

@@ -81,7 +81,7 @@ pub fn trigger_level_mv(slicer: Slicer, noise_dbm: f32, floor_db: f32) -> f64 {
 }
 
 /// The receiver's constants: only the current board's slicer has known delays.
-fn calibration(slicer: Slicer) -> Calibration {
+pub(super) fn calibration(slicer: Slicer) -> Calibration {
     match slicer {
         Slicer::RcFollowing => Calibration::ADSBEE_1090,
         Slicer::Fixed | Slicer::PeakFollowing => Calibration::without_delay(),

@@ -350,7 +350,10 @@ fn raw_frames_status_and_statistics() {
         json!([["5D4B18FFFC710B", -78, 12, "2B5792B49315"]]),
     );
     let mode_ac = FrameReport {
-        bits: Bits::ModeAc(mode_s::ModeACode(0o7700)),
+        bits: Bits::ModeAc {
+            code: mode_s::ModeACode(0o7700),
+            spi: false,
+        },
         ..full
     };
     let made = json::raw(SOURCE, &mode_ac, &moment, &mut out);
