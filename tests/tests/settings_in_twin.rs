@@ -165,6 +165,9 @@ fn the_self_test_of_revision_e_names_a_bus_that_is_held_and_a_low_level_that_is_
     let bus = &mut other.chip.bus;
     bus.adc.set_input(low, Box::new(Steady(0.9)));
     let said = ask(&mut other, "AT+TEST", 300);
-    assert!(said.contains("TRIGGER_LEVEL_LOW FAIL 9"), "{said}");
+    assert!(
+        said.contains("TRIGGER_LEVEL_LOW FAIL 899 mV, set 1300 mV"),
+        "{said}"
+    );
     assert!(said.ends_with("ERROR TRIGGER_LEVEL_LOW\r\n"), "{said}");
 }
