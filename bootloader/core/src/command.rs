@@ -185,4 +185,53 @@ mod tests {
             [Typed::TooLong, Typed::Command(Command::IsLocked)]
         );
     }
+
+    /// What lines complete, worked out from whole lines.
+    fn expected(text: &[u8]) -> Vec<Typed> {
+        let lines = text.split_inclusive(|byte| matches!(byte, b'\r' | b'\n'));
+        let ended = lines.filter_map(|line| line.strip_suffix(b"\r").or(line.strip_suffix(b"\n")));
+        ended
+            .filter_map(|line| {
+                let begun = line.iter().rposition(|byte| !(b' '..=b'~').contains(byte));
+                let line = &line[begun.map_or(0, |at| at + 1)..];
+                let known = COMMANDS.iter().find(|entry| entry.0.as_bytes() == line);
+                match known {
+                    _ if !line.starts_with(b"AT") => None,
+                    _ if line.len() > 48 => Some(Typed::TooLong),
+                    Some(entry) => Some(Typed::Command(entry.1)),
+                    None => Some(Typed::Unknown),
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_million_mutated_lines_are_answered_once_each_and_nothing_else() {
+        let mut state = 1u32;
+        let mut next = move |below: usize| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as usize % below
+        };
+        let (mut known, mut refused) = (0, 0);
+        for _ in 0..1_000_000 {
+            let mut line = COMMANDS[next(COMMANDS.len())].0.as_bytes().to_vec();
+            for _ in 0..next(4) {
+                let at = next(line.len() + 1);
+                match next(4) {
+                    0 => line.insert(at, next(256) as u8),
+                    1 => line.insert(at, b" ATR+=?01\r\n"[next(11)]),
+                    2 if at < line.len() => drop(line.remove(at)),
+                    _ if at < line.len() => line[at] ^= 1 << next(8),
+                    _ => line.extend([b'A'; 60]),
+                }
+            }
+            line.extend_from_slice([&b"\r"[..], b"\n", b"\r\n"][next(3)]);
+            let found = typed(&line);
+            assert_eq!(found, expected(&line), "{line:?}");
+            let is_known = |typed: &&Typed| matches!(typed, Typed::Command(_));
+            known += found.iter().filter(is_known).count();
+            refused += found.len() - found.iter().filter(is_known).count();
+        }
+        assert!(known > 300_000 && refused > 300_000, "{known} {refused}");
+    }
 }
