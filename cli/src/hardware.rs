@@ -183,10 +183,11 @@ mod tests {
                 .replace("CORE:ADDRESS", "1:10000000")
                 .replace("=CORE", "=1")
                 .replace("PORT:RATE", "gnss:0.5")
-                .replace("=N", "=3");
+                .replace("=N", "=3")
+                .replace("=US", "=300");
             assert!(example.parse::<Planned>().is_ok(), "{example}");
             count += 1;
         }
-        assert_eq!(count, 26);
+        assert_eq!(count, 27);
     }
 }
