@@ -121,8 +121,10 @@ pub fn run(airs: &Airs, group: Option<&str>, mut tell: impl FnMut(&str, &Outcome
         return;
     }
     let mut stem = stem();
-    let mut lock = Outcome::default();
-    lock.lock_s = until_stamps(&mut stem, &airs.few);
+    let mut lock = Outcome {
+        lock_s: until_stamps(&mut stem, &airs.few),
+        ..Outcome::default()
+    };
     play(&mut stem.fork(), &airs.at_30, &mut lock);
     tell("cold start, then 30 dB at once", &lock);
     stem.run_to_ms(STEM_MS);

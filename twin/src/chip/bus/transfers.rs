@@ -53,7 +53,7 @@ impl Bus {
 
     /// No channel has a transfer for so long from now on.
     pub fn starve_dma(&mut self, us: u64) {
-        self.dma_free = self.now + us * u64::from(self.sys_hz) / 1_000_000;
+        self.dma_free = self.now + us * self.sys_hz / 1_000_000;
     }
 
     /// One transfer, and the cycle of the next.
