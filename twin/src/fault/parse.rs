@@ -343,6 +343,7 @@ mod tests {
                     .replace("CORE:ADDRESS", "1:10000000")
                     .replace("=CORE", "=1")
                     .replace("PORT:RATE", "gnss:0.5")
+                    .replace("=US", "=300")
                     .replace("=N", "=3")
                     .replace(":N", ":3")
                     .replace(":SHARE", ":0.1");
