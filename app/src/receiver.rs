@@ -53,7 +53,7 @@ const REPLIES_A_TURN: usize = 4;
 /// Aircraft whose second ends in one turn of the loop: about 0.1 ms of core 0. All four hundred at once let the queue of frames overflow.
 const AIRCRAFT_A_TURN: usize = 8;
 
-/// What the cores share beside the queue: counters that core 1 writes, and a wish of core 0. One static, because a small one of its own would stand between
+/// What the cores share beside the queue: counters that core 1 writes, and wishes of core 0. One static, because a small one of its own would stand between
 /// the rings, whose alignment makes it 8 KiB large.
 pub struct Shared {
     /// Whether frames are taken: core 1 looks at no sample while not.
@@ -227,7 +227,7 @@ impl Receiver {
             let Some(reply) = self.replies.dequeue() else {
                 return false;
             };
-            if self.states.is_receiving && self.stored.settings.rx_enable {
+            if self.is_receiving() {
                 self.reply(&reply, now);
             }
         }
