@@ -69,7 +69,7 @@ pub struct Context {
     pub unheard_words: &'static AtomicU32,
     /// Whether core 0 wants refused frames, too.
     pub wants_refused: &'static AtomicBool,
-    /// Whether core 0 wants Mode A/C replies; they are searched for and counted anyway.
+    /// Whether core 0 wants Mode A/C replies.
     pub wants_replies: &'static AtomicBool,
     pub queue: Producer<'static, RawFrame>,
     pub replies: Producer<'static, Reply>,
@@ -119,7 +119,7 @@ fn block(context: &mut Context) {
     }
     demodulator.set_floor(floor_cdbm.load(Ordering::Relaxed) as i16);
     demodulator.tell_refused(wants_refused.load(Ordering::Relaxed));
-    let wants_replies = wants_replies.load(Ordering::Relaxed);
+    demodulator.tell_replies(wants_replies.load(Ordering::Relaxed));
     let mut heard = false;
     let mut replied = false;
     let mut newest = || capture.written();
@@ -144,9 +144,6 @@ fn block(context: &mut Context) {
         }
     };
     let mut reply = |reply| {
-        if !wants_replies {
-            return;
-        }
         replied = true;
         count(match replies.enqueue(reply) {
             Ok(()) => &queue_counters.replies_queued,

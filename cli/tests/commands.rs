@@ -238,8 +238,8 @@ fn a_profile_names_the_functions_of_both_cores() {
         .expect("a share")
         .parse()
         .expect("a number");
-    // The densest recording at hand leaves core 1 a reserve, although Mode A/C is looked for in the time that Mode S leaves: nothing may be lost at the ring.
-    assert!(busy < 95.0, "core 1 is {busy} % busy");
+    // The densest recording at hand leaves core 1 a reserve: nothing may be lost at the ring.
+    assert!(busy < 80.0, "core 1 is {busy} % busy");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! | load | what is on the air, and the reports |
 //! |---|---|
 //! | noise | noise alone: the comparator toggles all the time |
-//! | mode ac | 40 000 Mode A/C replies a second |
+//! | mode ac | 40 000 Mode A/C replies a second, for which the Beast client has asked |
 //! | frames | long frames back to back, Beast on CONSOLE |
 //! | reports | nothing; CSBee of 400 aircraft on CONSOLE and COMMS_UART |
 //!
@@ -24,6 +24,8 @@ const PS_A_MS: u64 = 1_000_000_000;
 const LOAD_MS: u64 = 100;
 /// A second's reports.
 const REPORTS_MS: u64 = 1000;
+/// Core 0 tells core 1 of a changed wish within a beat of 50 ms.
+const ASKED_MS: u64 = 60;
 /// Cycles of a long frame's 120 µs.
 const FRAME_CYCLES: f64 = 14_400.0;
 /// Cycles of a word of 32 samples.
@@ -174,11 +176,13 @@ fn main() -> std::io::Result<()> {
     };
     let air = |traffic: Traffic| traffic.scene().wave(wave::STEP_PS);
     let mut result = Vec::new();
-    for (name, wave) in [
-        ("noise", air(quiet)),
-        ("mode ac", air(replies)),
-        ("frames", limit::back_to_back(LOAD_MS).0),
+    for (name, wave, asks) in [
+        ("noise", air(quiet), b"\x1a1j"),
+        ("mode ac", air(replies), b"\x1a1J"),
+        ("frames", limit::back_to_back(LOAD_MS).0, b"\x1a1j"),
     ] {
+        device.board.console_write(asks);
+        device.run_ms(ASKED_MS);
         device.play_on(Box::new(Player::new(wave, &FrontEnd::ADSBEE_1090)));
         device.run_ms(PRE_ROLL_PS / PS_A_MS);
         let load = measure(&mut device, &functions, name, LOAD_MS);

@@ -47,7 +47,7 @@ pub fn run(
     options: Options,
     sink: &mut dyn FnMut(RawFrame),
 ) -> CountersSnapshot {
-    run_with_replies(source, options, sink, &mut |_| {})
+    play(source, options, sink, None)
 }
 
 /// The same with Mode A/C replies.
@@ -56,6 +56,15 @@ pub fn run_with_replies(
     options: Options,
     sink: &mut dyn FnMut(RawFrame),
     replies: &mut dyn FnMut(Reply),
+) -> CountersSnapshot {
+    play(source, options, sink, Some(replies))
+}
+
+fn play(
+    source: &mut dyn PulseSource,
+    options: Options,
+    sink: &mut dyn FnMut(RawFrame),
+    mut replies: Option<&mut dyn FnMut(Reply)>,
 ) -> CountersSnapshot {
     let (ring, arrival_ring) = (Box::new(SampleRing::new()), Box::new(ArrivalRing::new()));
     let level_ring = Box::new(LevelRing::new());
@@ -66,6 +75,7 @@ pub fn run_with_replies(
     };
     let counters = Counters::new();
     let mut demodulator = Box::new(Demodulator::new(options.calibration));
+    demodulator.tell_replies(replies.is_some());
     let phase = options.sample_phase % TICKS_PER_SAMPLE;
     let store = |index, word| ring.store(index, word);
     let mut sampler = Sampler::new(&store, TICKS_PER_SAMPLE, phase);
@@ -98,7 +108,12 @@ pub fn run_with_replies(
         converter.convert_before(2 * edge_tick(until_ps), source, &level_ring);
         let words = sampler.words();
         let mut newest = || words;
-        let (mut frame, mut reply) = (|frame| sink(frame), |reply| replies(reply));
+        let mut frame = |frame| sink(frame);
+        let mut reply = |reply| {
+            if let Some(replies) = &mut replies {
+                replies(reply);
+            }
+        };
         demodulator.run(rings, words, &counters, &mut newest, &mut frame, &mut reply);
     }
     counters.snapshot()

@@ -120,6 +120,8 @@ pub struct Demodulator {
     accepted_at: u64,
     /// Whether refused frames are handed on, too.
     tells_refused: bool,
+    /// Whether Mode A/C replies are searched for.
+    tells_replies: bool,
     /// One of the words just looked at, and its first sample.
     refused: Option<([u8; LONG_BYTES], u64)>,
     /// The word up to which the refused frames handed on have used up their share.
@@ -147,6 +149,7 @@ impl Demodulator {
             free_from: 0,
             accepted_at: 0,
             tells_refused: false,
+            tells_replies: false,
             refused: None,
             refused_until: 0,
             heard: Heard::new(),
@@ -171,6 +174,11 @@ impl Demodulator {
     /// Whether frames whose parity does not fit are wanted, too: as many as there is time for.
     pub fn tell_refused(&mut self, tells: bool) {
         self.tells_refused = tells;
+    }
+
+    /// Whether Mode A/C replies are wanted: the search takes the time that Mode S leaves, and on noise that is half of the core.
+    pub fn tell_replies(&mut self, tells: bool) {
+        self.tells_replies = tells;
     }
 
     /// Steps over the words up to `written`, which nobody wants to hear; gives how many. They are not looked at later.
@@ -253,7 +261,9 @@ impl Demodulator {
         if end <= self.replies.next() {
             return;
         }
-        if is_behind {
+        if !self.tells_replies {
+            self.replies.skip(end);
+        } else if is_behind {
             add(&counters.reply_words_late, self.replies.skip(end));
         } else {
             self.replies.search(ring, end, counters, sink);

@@ -100,6 +100,7 @@ fn hear(words: &[u32], block: usize) -> (Vec<Reply>, Vec<RawFrame>, CountersSnap
     };
     let counters = Counters::new();
     let mut demodulator = Demodulator::new(Calibration::without_delay());
+    demodulator.tell_replies(true);
     let (mut replies, mut frames) = (Vec::new(), Vec::new());
     let mut written = 0;
     for block in words.chunks(block) {

@@ -11,7 +11,9 @@ use crate::port::{Counts, Kind, Outlet, Port};
 use crate::routing::{self, Look, MAX_AIRCRAFT, MAX_FRAME, MAX_SECOND};
 use crate::schedule::{Next, Schedule};
 use report::{Bits, FrameReport, FrameTimes, Full, Gnss, Moment, Statistics, json, nmea};
-use settings::choices::{Decoded, Nmea, Raw, RawFilter, Reporting, SystemStatistics};
+use settings::choices::{
+    AdsbStatistics, Decoded, Nmea, Raw, RawFilter, Reporting, SystemStatistics,
+};
 use settings::{PortSettings, Settings};
 use tracker::{Reader, Tracker};
 
@@ -166,9 +168,11 @@ impl<O: Outlet> Reporter<O> {
         self.tells_frames() && asked
     }
 
-    /// Whether anybody here asks for replies: for themselves, or for an aircraft's ACFPS.
+    /// Whether anybody here asks for replies: for themselves, or for how many there are, in a second or of an aircraft.
     pub fn asks_for_mode_ac(&self) -> bool {
-        self.wants_mode_ac() || self.is_running && self.carried.decoded == Decoded::Csbee
+        let counts = self.carried.decoded == Decoded::Csbee
+            || self.carried.adsb_statistics != AdsbStatistics::None;
+        self.wants_mode_ac() || self.is_running && counts
     }
 
     /// Whether demodulated frames are wanted that were not accepted.

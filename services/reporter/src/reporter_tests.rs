@@ -384,18 +384,24 @@ fn what_was_not_accepted_goes_out_when_asked_for() {
     assert_eq!(sky.reporter.port.outlet.waiting.len(), 18);
 }
 
+/// A Mode A/C reply, heard when this frame was.
+fn reply(frame: &Frame) -> report::FrameReport<'_> {
+    report::FrameReport {
+        bits: report::Bits::ModeAc {
+            code: mode_s::ModeACode(0o7700),
+            spi: false,
+        },
+        ..report::FrameReport::of_frame(frame, 0)
+    }
+}
+
 #[test]
 fn a_beast_client_asks_for_mode_ac() {
     let mut sky = Sky::new(Decoded::None, Reporting::EverySecond, 4_096);
     sky.settings.console.raw = settings::choices::Raw::Beast;
     sky.reporter.apply(&sky.settings);
-    let reply = report::FrameReport {
-        bits: report::Bits::ModeAc {
-            code: mode_s::ModeACode(0o7700),
-            spi: false,
-        },
-        ..report::FrameReport::of_frame(&all_call(5), 0)
-    };
+    let all_call = all_call(5);
+    let reply = reply(&all_call);
     let sent = |sky: &mut Sky| {
         sky.reporter.frame(&reply, true, &context(0));
         core::mem::take(&mut sky.reporter.port.outlet.waiting).len()
@@ -415,18 +421,34 @@ fn a_beast_client_asks_for_mode_ac() {
     assert_eq!(sent(&mut sky), 0);
 }
 
+/// Core 1 searches for replies while a port asks, and not otherwise.
+#[test]
+fn mode_ac_is_asked_for_by_what_tells_or_counts_it() {
+    use settings::choices::{AdsbStatistics, Raw};
+    let mut sky = Sky::new(Decoded::None, Reporting::EverySecond, 4_096);
+    let mut asks = |decoded, raw, adsb_statistics| {
+        let port = &mut sky.settings.console;
+        (port.decoded, port.raw, port.adsb_statistics) = (decoded, raw, adsb_statistics);
+        sky.reporter.apply(&sky.settings);
+        sky.reporter.asks_for_mode_ac()
+    };
+    let none = AdsbStatistics::None;
+    assert!(!asks(Decoded::None, Raw::Hex, none));
+    assert!(!asks(Decoded::None, Raw::Beast, none));
+    assert!(!asks(Decoded::Mavlink1, Raw::None, AdsbStatistics::Csv));
+    assert!(!asks(Decoded::Csv, Raw::None, none));
+    assert!(asks(Decoded::Csv, Raw::None, AdsbStatistics::Csv));
+    assert!(asks(Decoded::Json, Raw::None, AdsbStatistics::Json));
+    assert!(asks(Decoded::Csbee, Raw::None, none));
+}
+
 #[test]
 fn text_tells_mode_ac_where_all_is_asked_for() {
     let mut sky = Sky::new(Decoded::None, Reporting::EverySecond, 4_096);
     sky.settings.console.raw = settings::choices::Raw::Hex;
     sky.reporter.apply(&sky.settings);
-    let reply = report::FrameReport {
-        bits: report::Bits::ModeAc {
-            code: mode_s::ModeACode(0o7700),
-            spi: false,
-        },
-        ..report::FrameReport::of_frame(&all_call(5), 0)
-    };
+    let all_call = all_call(5);
+    let reply = reply(&all_call);
     sky.reporter.frame(&reply, true, &context(0));
     assert!(sky.reporter.port.outlet.waiting.is_empty());
     sky.settings.raw_filter = settings::choices::RawFilter::All;
