@@ -54,14 +54,18 @@ const GOES: usize = 2;
 const MOST_EDGES: u32 = 20;
 /// Fewest edges that are an arrival.
 const LEAST_EDGES: u32 = 8;
+/// Edges taken off where the mean's uncertainty is reckoned: the scatter of few edges is itself uncertain, and 3.3 standard uncertainties shall be about what Student's t demands
+/// for 99.9 %.
+const UNCERTAIN_EDGES: u32 = 4;
 /// A mean beyond this is measured again from where it points, parts of a tick: windows at whose rim edges were missed. A sample.
 const RECENTRE: u32 = 7 * 256;
 /// Least uncertainty, parts of a tick: what transponders' rise times of 50 to 100 ns and the grid of whole ticks leave (4.2 ns).
 const LEAST_SIGMA: u32 = 128;
 /// The same where the level is not known, and with it the delay: 20 ns.
 const UNLEVELLED_SIGMA: u32 = 614;
-/// Uncertainty of an arrival from the first sampler alone, parts of a tick: 15 ticks / √12.
-pub(crate) const COARSE_SIGMA: u16 = 1109;
+/// Uncertainty of an arrival from the first sampler alone, parts of a tick: one of its samples, 125 ns. In noise a preamble may fit best two samples off, and there too few
+/// edges are found: at 12 dB in four frames of a thousand.
+pub(crate) const COARSE_SIGMA: u16 = 15 * 256;
 
 /// So many ticks as a place, rounded.
 const fn place(ticks: u32) -> u32 {
@@ -115,9 +119,8 @@ const AN_EDGE: u32 = 1 << 16;
 
 /// Low samples of a window of eight that shows an edge, low before and high behind; 0 for any other.
 static LOWS: [u8; 256] = lows();
-/// 4096 over a number of edges, from [`LEAST_EDGES`] on: the core has no division.
+/// 4096 over a number of edges: the core has no division.
 static SHARES: [u16; MOST_EDGES as usize + 1] = shares();
-
 const fn lows() -> [u8; 256] {
     let mut table = [0; 256];
     let mut window = 0;
@@ -132,7 +135,7 @@ const fn lows() -> [u8; 256] {
 
 const fn shares() -> [u16; MOST_EDGES as usize + 1] {
     let mut table = [0; MOST_EDGES as usize + 1];
-    let mut edges = LEAST_EDGES as usize;
+    let mut edges = (LEAST_EDGES - UNCERTAIN_EDGES) as usize;
     while edges < table.len() {
         table[edges] = (4096 / edges) as u16;
         edges += 1;
@@ -150,10 +153,11 @@ pub(crate) fn measure(ring: &ArrivalRing, samples: &Samples, coarse: u64, frame:
         let (sample, rest) = samples.last(ticks + PREAMBLE_TICKS);
         let sums = leading_edges(ring, (sample << FRACTION) + rest * place(1), frame);
         let edges = sums.packed / AN_EDGE;
-        let (true, Some(&share)) = (edges >= LEAST_EDGES, SHARES.get(edges as usize)) else {
+        if !(LEAST_EDGES..=MOST_EDGES).contains(&edges) {
             break;
-        };
-        let share = u32::from(share);
+        }
+        let [share, wide_share] =
+            [edges, edges - UNCERTAIN_EDGES].map(|edges| u32::from(SHARES[edges as usize]));
         // Both with eight bits of fraction less than they could have: the squares must fit.
         let mean = ((sums.packed % AN_EDGE) * share) >> 12;
         let off = (sums.packed % AN_EDGE) as i32 - CENTRE * edges as i32;
@@ -161,7 +165,7 @@ pub(crate) fn measure(ring: &ArrivalRing, samples: &Samples, coarse: u64, frame:
         expected = ((ticks as i64) << 8) + i64::from(parts);
         let mean_square = ((sums.squares >> 4) * share) >> 8;
         let of_one = mean_square.saturating_sub(mean * mean);
-        let of_mean = (of_one * share) >> 12;
+        let of_mean = (of_one * wide_share) >> 12;
         sigma = of_mean * (PARTS_A_STEP * PARTS_A_STEP) as u32;
         sigma = root(sigma + LEAST_SIGMA * LEAST_SIGMA);
         if parts.unsigned_abs() <= RECENTRE {
@@ -277,6 +281,24 @@ mod tests {
         }
         // 3.5 ns rms: the grid of whole ticks gives 2.4.
         assert!(squares / count < 107 * 107, "{}", squares / count);
+    }
+
+    #[test]
+    fn where_the_preamble_misled_the_stated_uncertainty_says_so() {
+        let begin = 5_000_000 * 256;
+        let ring = sampled(begin);
+        let mut coarse_alone = 0;
+        for off in -40i64..=40 {
+            let coarse = (begin / 256).wrapping_add_signed(off);
+            let found = measure(&ring, &Samples::new(0), coarse, &FRAME);
+            let error = (found.ticks * 256 + u64::from(found.parts)).abs_diff(begin);
+            assert!(
+                error * 10 <= u64::from(found.sigma) * 33,
+                "{off}: {error} {found:?}"
+            );
+            coarse_alone += u32::from(found.sigma == COARSE_SIGMA);
+        }
+        assert!(coarse_alone > 10, "{coarse_alone}");
     }
 
     #[test]

@@ -24,7 +24,7 @@ const ANSWER_MS: u64 = 20;
 const NS_A_DAY: i128 = 86_400_000_000_000;
 const PS_A_SECOND: i128 = 1_000_000_000_000;
 /// Standard deviations in a stated bound.
-const DEVIATIONS: f64 = 3.3;
+pub const DEVIATIONS: f64 = 3.3;
 
 /// A scene whose waves are worked out once, with the uncertainty that the demodulator states for each frame.
 pub struct Air {
@@ -174,6 +174,30 @@ impl Device {
         self.board.chip.bus.time_surroundings();
     }
 
+    /// How far the time of day that the device tells is ahead, ms: of UTC when the answer was there, up to 2 ms after it was asked.
+    pub fn time_of_day_error_ms(&mut self) -> Option<i64> {
+        self.board.console_read();
+        self.board.console_write(b"AT+GNSS?\r\n");
+        let mut said = String::new();
+        for _ in 0..ANSWER_MS {
+            self.run_ms(1);
+            said.push_str(&String::from_utf8_lossy(&self.board.console_read()));
+            if let Some((_, rest)) = said.split_once(",utc=") {
+                let told = ms_of_day(rest.get(..12)?)?;
+                let now_ps = self.board.chip.bus.true_ps() - self.gnss.first_second_ps;
+                let name = self
+                    .gnss
+                    .calendar
+                    .name((now_ps / PS_A_SECOND as u128) as u64);
+                let minutes = i64::from(name.hour) * 60 + i64::from(name.minute);
+                let second = minutes * 60 + i64::from(name.second);
+                let true_ms = second * 1000 + (now_ps % PS_A_SECOND as u128 / 1_000_000_000) as i64;
+                return Some(told - true_ms);
+            }
+        }
+        None
+    }
+
     /// What the device says of its clock's bound.
     pub fn bound_ns(&mut self) -> Option<f64> {
         self.gnss("bound_ns")?.parse().ok()
@@ -231,6 +255,13 @@ impl Device {
         }
         frames
     }
+}
+
+/// `hh:mm:ss.sss`.
+fn ms_of_day(text: &str) -> Option<i64> {
+    let mut parts = text.split([':', '.']).map(|part| part.parse::<i64>().ok());
+    let mut next = || parts.next()?;
+    Some(((next()? * 60 + next()?) * 60 + next()?) * 1000 + next()?)
 }
 
 /// `*<hex>;(SIGS,SIGQ,TS1s,TS24h)`.
