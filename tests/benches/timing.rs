@@ -22,13 +22,13 @@ fn main() -> std::io::Result<()> {
     let hours = tests::number_option("--hours", HOURS);
     let mut bench = Bench::new(
         "timing",
-        "scene,stamps,rms_ns,p999_ns,worst_ns,mean_bound_ns,bound_violations,backwards,wrong_second,withheld,utc_violations,lock_s",
+        "scene,stamps,rms_ns,p999_ns,worst_ns,mean_bound_ns,bound_violations,backwards,wrong_second,withheld,utc_violations,unjust,day_error_ms,lock_s",
     );
     bench.line(&format!(
         "the time base alone, {hours} h a scene, 12 stamps a second; ns"
     ));
     bench.line(&format!(
-        "{:<34}{:>8}{:>7}{:>8}{:>8}{:>8}{:>10}{:>7}{:>7}{:>10}{:>7}",
+        "{:<34}{:>8}{:>7}{:>8}{:>8}{:>8}{:>10}{:>7}{:>7}{:>10}{:>8}{:>7}{:>7}",
         "scene",
         "stamps",
         "rms",
@@ -39,6 +39,8 @@ fn main() -> std::io::Result<()> {
         "back",
         "wrong",
         "withheld",
+        "unjust",
+        "day ms",
         "lock s"
     ));
     let mut told = (0, 0, 0);
@@ -70,9 +72,10 @@ fn main() -> std::io::Result<()> {
 
 fn line(bench: &mut Bench, name: &str, outcome: &Outcome) {
     let lock = outcome.lock_s.map_or("-".into(), |s| format!("{s:.1}"));
+    let day = outcome.day_error_ms.map_or("-".into(), |ms| ms.to_string());
     let wrong = outcome.violations + outcome.utc_violations;
     bench.line(&format!(
-        "{name:<34}{:>8}{:>7.1}{:>8.1}{:>8.1}{:>8.0}{wrong:>10}{:>7}{:>7}{:>10}{lock:>7}",
+        "{name:<34}{:>8}{:>7.1}{:>8.1}{:>8.1}{:>8.0}{wrong:>10}{:>7}{:>7}{:>10}{:>8}{day:>7}{lock:>7}",
         outcome.errors_ns.len(),
         outcome.rms_ns(),
         outcome.quantile_ns(0.999),
@@ -80,10 +83,11 @@ fn line(bench: &mut Bench, name: &str, outcome: &Outcome) {
         outcome.bound_ns(),
         outcome.backwards,
         outcome.wrong_second,
-        outcome.withheld
+        outcome.withheld,
+        outcome.unjust
     ));
     bench.row(format!(
-        "{name},{},{:.2},{:.1},{:.1},{:.0},{},{},{},{},{},{lock}",
+        "{name},{},{:.2},{:.1},{:.1},{:.0},{},{},{},{},{},{},{day},{lock}",
         outcome.errors_ns.len(),
         outcome.rms_ns(),
         outcome.quantile_ns(0.999),
@@ -93,7 +97,8 @@ fn line(bench: &mut Bench, name: &str, outcome: &Outcome) {
         outcome.backwards,
         outcome.wrong_second,
         outcome.withheld,
-        outcome.utc_violations
+        outcome.utc_violations,
+        outcome.unjust
     ));
 }
 
@@ -181,7 +186,7 @@ fn device(bench: &mut Bench, told: &mut (usize, usize, usize)) -> String {
     let group = tests::option("--group");
     image_rows::run(&Airs::new(), group.as_deref(), |name, outcome| {
         line(bench, name, outcome);
-        told.0 += outcome.violations;
+        told.0 += outcome.violations + outcome.unjust;
         told.1 += outcome.backwards;
         told.2 += outcome.wrong_second;
         if name.ends_with(STEADY) {

@@ -25,6 +25,10 @@ pub struct Outcome {
     pub backwards: usize,
     /// Stamps asked for and not given once locked.
     pub withheld: usize,
+    /// TS1s given though the bound is beyond its limit, or withheld though it is within.
+    pub unjust: usize,
+    /// Error of the time of day that `AT+STATS?` tells, to its milliseconds.
+    pub day_error_ms: Option<i64>,
     /// Seconds from the start to the first whole stamp.
     pub lock_s: Option<f64>,
 }

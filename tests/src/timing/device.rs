@@ -2,20 +2,28 @@
 //!
 //! ```text
 //!   GNSS receiver, true time ─ PPS, NMEA ─┐
-//!   scene, true time ─ front end ─ PULSES ─┴─ image ─ HEX lines with TS1s and TS24h ─ against the scene's truth
+//!   scene, true time ─ front end ─ PULSES ─┴─ image ─┬─ HEX lines with TS1s and TS24h ─ against the scene's truth
+//!                                                    └─ queue between the cores ─ uncertainty of each arrival
 //! ```
+//! What the demodulator states of an arrival is in no report; it is read where core 1 leaves it for core 0. The host's demodulator would not do: its samples fall elsewhere, and of
+//! a weak frame it may find the place where the image did not.
 
 use crate::reception::arrival::NS_A_PART;
-use crate::reception::native::{self, Rendered};
+use crate::reception::native::Rendered;
+use demod::RawFrame;
+use mode_s::frame::LONG_BYTES;
+use object::{Object, ObjectSymbol};
 use std::collections::HashMap;
+use std::mem::offset_of;
+use std::ops::Range;
 use twin::board::gnss::Options;
 use twin::board::{Board, Setup};
 use twin::chip::crystal::Deviation;
 use twin::chip::flash::Flash;
 use twin::fault::Fault;
-use twin::front_end::{FrontEnd, Player, Slicer};
+use twin::front_end::{FrontEnd, Player};
 use twin::source::scene::Scene;
-use twin::source::scene::traffic::{Range, Traffic};
+use twin::source::scene::traffic::{self, Traffic};
 
 /// Distance of samples of the air, ps: 125 MHz, as for the time of arrival.
 const STEP_PS: u64 = 8_000;
@@ -26,11 +34,15 @@ const PS_A_SECOND: i128 = 1_000_000_000_000;
 /// Standard deviations in a stated bound.
 pub const DEVIATIONS: f64 = 3.3;
 
-/// A scene whose waves are worked out once, with the uncertainty that the demodulator states for each frame.
+/// Where SRAM begins.
+const SRAM: u64 = 0x2000_0000;
+/// Ticks a second of an arrival.
+const TICKS_A_SECOND: f64 = 120e6;
+
+/// A scene whose waves are worked out once.
 pub struct Air {
     scene: Scene,
     level: Rendered,
-    sigmas_ns: HashMap<Vec<u8>, f64>,
 }
 
 impl Air {
@@ -41,7 +53,7 @@ impl Air {
             frames,
             spacing_ps: 1_000_000_000,
             jitter_ps: 400_000_000,
-            snr_db: Range::at(snr_db),
+            snr_db: traffic::Range::at(snr_db),
             ..Traffic::default()
         };
         Self::of(traffic.scene())
@@ -50,22 +62,7 @@ impl Air {
     /// This scene.
     pub fn of(scene: Scene) -> Self {
         let level = Rendered::of(&mut scene.wave(STEP_PS));
-        let trigger_mv = twin::board::pwm_level_mv();
-        let (raw, _) = native::raw_frames(&level, Slicer::RcFollowing, trigger_mv);
-        let sigma = |raw: &demod::RawFrame| {
-            let sigma_ns = f64::from(raw.arrival_sigma) * NS_A_PART;
-            (raw.frame.bytes().to_vec(), sigma_ns)
-        };
-        Self {
-            sigmas_ns: raw.iter().map(sigma).collect(),
-            scene,
-            level,
-        }
-    }
-
-    /// How far a frame's time of arrival may be off by what its demodulator says, nanoseconds; `None` where the host's did not hear it.
-    pub fn arrival_bound_ns(&self, frame: &[u8]) -> Option<f64> {
-        Some(self.sigmas_ns.get(frame)? * DEVIATIONS)
+        Self { scene, level }
     }
 }
 
@@ -74,6 +71,8 @@ pub struct Device {
     pub board: Board,
     gnss: Options,
     text: String,
+    /// Where the queue of frames lies in SRAM.
+    queue: Range<usize>,
 }
 
 /// A frame as it was reported.
@@ -85,6 +84,8 @@ pub struct Stamped {
     pub ts24h_ns: Option<u64>,
     /// When it came, nanoseconds since midnight by the scene's truth; in a leap second beyond a day.
     pub truth_ns: f64,
+    /// How far its time of arrival may be off by what the demodulator says.
+    pub arrival_bound_ns: f64,
 }
 
 impl Stamped {
@@ -113,6 +114,7 @@ impl Device {
             board,
             gnss,
             text: String::new(),
+            queue: queue(),
         };
         device.ask("AT+PROTOCOL=CONSOLE,RAW");
         device.ask("AT+PROTOCOL=COMMS_UART,NONE");
@@ -160,6 +162,7 @@ impl Device {
             board: self.board.fork().expect("nothing is being played"),
             gnss: self.gnss.clone(),
             text: self.text.clone(),
+            queue: self.queue.clone(),
         }
     }
 
@@ -226,9 +229,11 @@ impl Device {
             .filter_map(|e| Some((e.frame()?.bytes(), i128::from(e.arrival_ps()))))
             .collect();
         let first_ps = playback.start_true_ps as i128 - self.gnss.first_second_ps as i128;
+        let mut arrival_bounds_ns = HashMap::new();
         let mut left = 5;
         while left > 0 {
             self.run_ms(2);
+            self.see_queue(&truth, &mut arrival_bounds_ns);
             left -= i32::from(self.board.playback_finished());
             let said = self.board.console_read();
             self.text.push_str(&String::from_utf8_lossy(&said));
@@ -245,7 +250,9 @@ impl Device {
                 let minutes = i128::from(name.hour) * 60 + i128::from(name.minute);
                 let of_day = minutes * 60 + i128::from(name.second);
                 let ps = of_day * PS_A_SECOND + ps.rem_euclid(PS_A_SECOND);
+                let seen = arrival_bounds_ns.get(&bytes);
                 frames.push(Stamped {
+                    arrival_bound_ns: seen.expect("each frame goes through the queue").1,
                     bytes,
                     ts1s_ns,
                     ts24h_ns,
@@ -255,6 +262,50 @@ impl Device {
         }
         frames
     }
+
+    /// Notes when the frames that stand in the queue came, and how far off that may be by what the demodulator says.
+    fn see_queue(&self, sent: &HashMap<&[u8], i128>, bounds_ns: &mut HashMap<Vec<u8>, (u64, f64)>) {
+        let queue = &self.board.chip.bus.sram[self.queue.clone()];
+        // The compiler lays the type out alike for both: its fields have the same sizes.
+        let (frame, arrival) = (offset_of!(RawFrame, frame), offset_of!(RawFrame, arrival));
+        let sigma = offset_of!(RawFrame, arrival_sigma);
+        for slot in queue.windows(size_of::<RawFrame>()) {
+            let Some(bytes) = slot.get(frame..frame + LONG_BYTES) else {
+                continue;
+            };
+            if !sent.contains_key(bytes) {
+                continue;
+            }
+            let ticks = u64::from_le_bytes(slot[arrival..arrival + 8].try_into().expect("eight"));
+            // Ticks count from the start of capture.
+            let at_s = ticks as f64 / TICKS_A_SECOND;
+            assert!(at_s < self.board.seconds(), "no arrival: {ticks}");
+            let sigma = u16::from_le_bytes([slot[sigma], slot[sigma + 1]]);
+            let bound_ns = f64::from(sigma) * NS_A_PART * DEVIATIONS;
+            // An air that is played again meets what is left of its frames of before.
+            let latest = bounds_ns.entry(bytes.to_vec()).or_insert((ticks, bound_ns));
+            if ticks > latest.0 {
+                *latest = (ticks, bound_ns);
+            }
+        }
+    }
+}
+
+/// Where the shipped app has its queue of frames, as a part of SRAM.
+fn queue() -> Range<usize> {
+    let path = crate::root().join("target/fw/app.elf");
+    let bytes = std::fs::read(path).expect("`cargo xtask fw` makes it");
+    let file = object::File::parse(&*bytes).expect("an ELF file");
+    let symbol = file
+        .symbols()
+        .find(|symbol| {
+            symbol
+                .name()
+                .is_ok_and(|name| name.contains("app5QUEUE") || name == "app::QUEUE")
+        })
+        .expect("the app has its queue");
+    let from = (symbol.address() - SRAM) as usize;
+    from..from + symbol.size() as usize
 }
 
 /// `hh:mm:ss.sss`.

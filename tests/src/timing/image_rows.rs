@@ -4,7 +4,8 @@
 //!   −20 ppm, 0.001 ppm/s: start ─ lock ─ 30 s ─┬─ 12, 20, 30 dB               each branch is a fork of the whole board
 //!                                              ├─ PPS 30 ns
 //!                                              ├─ NMEA late ─ garbled ─ absent
-//!                                              └─ PPS lost 10 s ─ back ─ lost 60 s ─ back
+//!                                              ├─ PPS lost 2 s ─ 10 s ─ back
+//!                                              └─ PPS lost 60 s ─ back
 //!   +20 ppm: start ─ lock ─ a ramp of 0.1 ppm/s begins ─ goes on            midnight, leap second: their own starts
 //! ```
 //! A second of the twin costs two of the host, so these are seconds; `campaign` has the hours.
@@ -23,8 +24,10 @@ const STEM_MS: u64 = 30_000;
 const LATE_MS: u64 = 1_500;
 /// Wrong characters a million: every second sentence loses its checksum.
 const GARBLED: u32 = 10_000;
-/// When the pulse and the name of a new start are there, ms, with some to spare.
+/// Time within which stamps are there after a start or when pulses come back, ms, with some to spare.
 const LOCK_WITHIN_MS: u64 = 13_000;
+/// Beyond this bound a frame gets no stamp, ns (`docs/time.md`).
+const STAMP_LIMIT_NS: f64 = 1_000.0;
 const LOOK_MS: u64 = 100;
 /// 2026-07-01 00:00:00.
 const MONTH_BEGINS: i64 = 1_782_864_000;
@@ -67,18 +70,24 @@ fn play(device: &mut Device, air: &Air, into: &mut Outcome) {
     let before = device.bound_ns();
     let frames = device.play_air(air);
     let after = device.bound_ns();
-    // The smaller of the two, so that nobody is excused by a bound that came later.
-    let clock = match (before, after) {
-        (Some(before), Some(after)) => Some(before.min(after)),
-        (one, other) => one.or(other),
-    };
-    judge(&frames, clock, air, into);
+    judge(&frames, [before, after], into);
 }
 
-/// Adds frames to an outcome: the bound of a stamp is the clock's and the frame's own.
-fn judge(frames: &[Stamped], clock_ns: Option<f64>, air: &Air, into: &mut Outcome) {
+/// Adds frames to an outcome: the bound of a stamp is the clock's, which was asked before and after them, and the frame's own.
+fn judge(frames: &[Stamped], clock_ns: [Option<f64>; 2], into: &mut Outcome) {
+    // The smaller of the two, so that nobody is excused by a bound that came later.
+    let least = clock_ns.into_iter().flatten().reduce(f64::min);
+    let greatest = clock_ns.into_iter().flatten().reduce(f64::max);
     let mut latest: Option<f64> = None;
     for frame in frames {
+        let own = frame.arrival_bound_ns;
+        if clock_ns.iter().all(Option::is_some) {
+            let [least, greatest] = [least, greatest].map(|clock| clock.unwrap_or(0.0) + own);
+            into.unjust += usize::from(match frame.ts1s_ns {
+                Some(_) => least > STAMP_LIMIT_NS,
+                None => greatest < STAMP_LIMIT_NS - 1.0,
+            });
+        }
         let Some(error) = frame.error_ns() else {
             into.withheld += 1;
             continue;
@@ -93,12 +102,8 @@ fn judge(frames: &[Stamped], clock_ns: Option<f64>, air: &Air, into: &mut Outcom
         into.backwards += usize::from((0.5..4.32e13).contains(&back));
         latest = Some(told);
         into.errors_ns.push(error);
-        // A weak frame that the device heard and the host did not: what was stated of it is not known.
-        let Some(own) = air.arrival_bound_ns(&frame.bytes) else {
-            continue;
-        };
         // A stamp is whole nanoseconds.
-        let bound = clock_ns.unwrap_or(0.0) + own + 1.0;
+        let bound = least.unwrap_or(0.0) + own + 1.0;
         into.bounds_ns.push(bound);
         into.violations += usize::from(error.abs() > bound);
     }
@@ -250,26 +255,37 @@ fn ramp(airs: &Airs, tell: &mut impl FnMut(&str, &Outcome)) {
     tell("a ramp of 0.1 ppm/s begins", &outcome);
 }
 
-/// Pulses lost and back.
+/// Pulses lost and back, after ten seconds and after a minute. The lock's time counts from their return.
 fn lost(stem: &Device, airs: &Airs, tell: &mut impl FnMut(&str, &Outcome)) {
-    let mut device = stem.fork();
-    for lost_ms in [10_000, 60_000] {
-        let second = lost_ms / 1_000;
+    for looks_ms in [&[2_000, 10_000][..], &[60_000]] {
+        let mut device = stem.fork();
         let from = device.now_ms();
         device.carry_out(Fault::Pps(false));
-        device.run_to_ms(from + 2_000);
-        let mut holdover = Outcome::default();
-        play(&mut device, &airs.at_30, &mut holdover);
-        tell("PPS lost for 2 s", &holdover);
-        device.run_to_ms(from + lost_ms);
-        let mut gone = Outcome::default();
-        play(&mut device, &airs.at_30, &mut gone);
-        tell(&format!("PPS lost for {second} s"), &gone);
+        let mut second = 0;
+        for look_ms in looks_ms {
+            second = look_ms / 1_000;
+            device.run_to_ms(from + look_ms);
+            let mut gone = Outcome::default();
+            play(&mut device, &airs.at_30, &mut gone);
+            gone.day_error_ms = device.time_of_day_error_ms();
+            tell(&format!("PPS lost for {second} s"), &gone);
+        }
         device.carry_out(Fault::Pps(true));
-        device.run_ms(4_000);
+        let back_ms = device.now_ms();
         let mut back = Outcome::default();
+        while back.lock_s.is_none() && device.now_ms() < back_ms + LOCK_WITHIN_MS {
+            device.run_ms(LOOK_MS);
+            let frames = device.play_air(&airs.few);
+            if frames.iter().any(|f| f.ts24h_ns.is_some()) {
+                back.lock_s = Some((device.now_ms() - back_ms) as f64 / 1_000.0);
+            }
+        }
         play(&mut device, &airs.at_30, &mut back);
-        tell(&format!("PPS back for 4 s after {second} s"), &back);
+        tell(&format!("PPS back after {second} s, at once"), &back);
+        device.run_to_ms(back_ms + 6_000);
+        let mut later = Outcome::default();
+        play(&mut device, &airs.at_30, &mut later);
+        tell(&format!("PPS back for 6 s after {second} s"), &later);
     }
 }
 
