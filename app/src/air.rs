@@ -5,12 +5,16 @@
 //!   64 words of samples ───┐
 //!   frames accepted ───────┴─ every fifth time, under LEARN: steering ─ PWM
 //! ```
-//! `adsbee_1090` has one trigger level, and its slicer is AC-coupled: the threshold rides on the level's average. `hi` is the level; `lo` is the lowest that LEARN may choose.
+//! Where the slicer is AC-coupled the threshold rides on the level's average, on the other board the trigger level is the threshold: each has its law. `hi` is the level;
+//! `lo` is the lowest that LEARN may choose, where it is below `hi`: equal ones, as they come, set a level and no bound. A board with a low level of its own keeps it at
+//! `lo`, never above the high one.
 
 use core::sync::atomic::Ordering;
 use demod::{Calibration, LEVEL_WORDS, LevelRing, SampleRing};
 use drivers::trigger_level::{DEFAULT_MV, FULL_SCALE_MV, TriggerLevel};
-use hal::board::{TRIGGER_LEVEL_ADC, TRIGGER_LEVEL_LOW_ADC, TriggerLevelPwm};
+use hal::board::{
+    THRESHOLD_RIDES_ON_AVERAGE, TRIGGER_LEVEL_ADC, TRIGGER_LEVEL_LOW_ADC, TriggerLevelPwm,
+};
 use hal::level_converter::LevelConverter;
 use settings::{Settings, choices::TriggerMode};
 use trigger::{Input, Law, NoiseFloor, Observed, SAMPLES, Steering};
@@ -19,8 +23,15 @@ use trigger::{Input, Law, NoiseFloor, Observed, SAMPLES, Steering};
 const WORDS: u32 = 64;
 /// Looks a step of the steering: four steps a second.
 const LOOKS_A_STEP: u32 = 5;
-/// Lowest and highest level of LEARN until `lo` says otherwise, mV: 5 dB to both sides of where the model's bias is.
-const LEARN_MV: (u16, u16) = (1200, 1370);
+/// Lowest and highest level of LEARN until `lo` says otherwise, mV: the range of the detector's output (AD8313 at the slope of the vendor's conversion). Nothing crosses
+/// a level outside it.
+const LEARN_MV: (u16, u16) = (400, 1650);
+/// How the threshold is steered on this board.
+const LAW: Law = if THRESHOLD_RIDES_ON_AVERAGE {
+    Law::Share
+} else {
+    Law::Crossings
+};
 
 /// The watch over the air.
 pub struct Air {
@@ -35,15 +46,17 @@ pub struct Air {
     observed: Observed,
     looks: u32,
     frames_before: u32,
-    /// High samples and crossings of the last step, per thousand samples, and steps made: what `AT+STATS?` tells.
+    /// What `AT+STATS?` tells.
     pub seen: Seen,
 }
 
-/// The air in numbers.
+/// The air in numbers: of the last quarter of a second, and steps made.
 #[derive(Clone, Copy, Default)]
 pub struct Seen {
     pub high_permille: u32,
     pub crossings_a_second: u32,
+    /// Those of noise: high for at most two samples.
+    pub short_a_second: u32,
     pub steps: u32,
 }
 
@@ -61,7 +74,7 @@ impl Air {
             samples,
             levels,
             floor: NoiseFloor::new(),
-            low_mv: LEARN_MV.0,
+            low_mv: DEFAULT_MV,
             high_mv: DEFAULT_MV,
             steering: None,
             observed: Observed::default(),
@@ -97,10 +110,11 @@ impl Air {
             frames: frames.wrapping_sub(self.frames_before),
         };
         self.frames_before = frames;
-        let samples = observed.samples.max(1);
+        let (crossings_a_second, short_a_second) = observed.rates();
         self.seen = Seen {
-            high_permille: observed.high * 1000 / samples,
-            crossings_a_second: observed.crossings * (8_000_000 / samples),
+            high_permille: observed.high * 1000 / observed.samples.max(1),
+            crossings_a_second,
+            short_a_second,
             steps: self.seen.steps + u32::from(self.steering.is_some()),
         };
         if let Some(steering) = &mut self.steering {
@@ -124,15 +138,20 @@ impl Air {
                 self.apply();
             }
             TriggerMode::Learn => {
-                let limits = (self.low_mv, LEARN_MV.1);
-                self.steering = Some(Steering::new(Law::Share, self.high_mv, limits));
+                let lowest = if settings.tl_lo_mv < settings.tl_hi_mv {
+                    settings.tl_lo_mv
+                } else {
+                    LEARN_MV.0
+                };
+                let steering = Steering::new(LAW, self.high_mv, (lowest, LEARN_MV.1));
+                self.steering = Some(steering);
             }
         }
     }
 
-    /// The levels set, mV.
+    /// The levels as they are set now, mV.
     pub fn levels_mv(&self) -> (u16, u16) {
-        (self.low_mv, self.high_mv)
+        (self.low_mv.min(self.high_mv), self.high_mv)
     }
 
     /// The trigger level as it stands at the comparator, mV.

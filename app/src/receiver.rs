@@ -305,6 +305,7 @@ impl Receiver {
         let words = self.shared.capture.words.load(Ordering::Relaxed);
         let frames = self.shared.queue.offered.load(Ordering::Relaxed);
         self.air.look(words, frames);
+        self.hardware.set_trigger_level_low(self.air.levels_mv().0);
         self.air.floor_cdbm()
     }
 

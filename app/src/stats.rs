@@ -3,7 +3,7 @@
 //! ```text
 //!   +STATS=DEVICE,uptime_s=..,start=..,slot=..,image=..   why this start happened, what runs
 //!   +STATS=CAPTURE,blocks=..,words=..,..        128 us a block
-//!   +STATS=AIR,high_permille=..,crossings=..,.. what the samples look like, trigger level, noise floor
+//!   +STATS=AIR,high_permille=..,crossings=..,.. what the samples look like (noise_crossings: high for at most two), trigger level, noise floor
 //!   +STATS=DEMOD,words=..,candidates=..,..      candidates = one outcome each, see services/demod
 //!   +STATS=TRIALS,trials_exact=..,..            parity checks by kind: what chance had
 //!   +STATS=MODE_AC,reply_words=..,brackets=..,..  brackets = no_reply + garbled + phantoms + replies, see services/demod
@@ -161,6 +161,7 @@ impl Stats<'_> {
             &[
                 ("high_permille", self.air.high_permille),
                 ("crossings", self.air.crossings_a_second),
+                ("noise_crossings", self.air.short_a_second),
                 ("trigger_lo", u32::from(self.trigger_mv.0)),
                 ("trigger_hi", u32::from(self.trigger_mv.1)),
                 ("learn_steps", self.air.steps),

@@ -32,6 +32,8 @@ pub const NAME: [u8; 16] = *b"adsbee_1090_e\0\0\0";
 pub const HAS_EEPROM: bool = true;
 /// Whether the receive gain's potentiometer is fitted.
 pub const HAS_POTENTIOMETER: bool = true;
+/// Whether the comparator's threshold rides on the level's average (AC-coupled slicer), or is the trigger level itself.
+pub const THRESHOLD_RIDES_ON_AVERAGE: bool = false;
 /// ADC channel of the high trigger level.
 pub const TRIGGER_LEVEL_ADC: u8 = 0;
 /// ADC channel of the low trigger level.

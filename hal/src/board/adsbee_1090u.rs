@@ -34,6 +34,8 @@ pub const NAME: [u8; 16] = *b"adsbee_1090u\0\0\0\0";
 pub const HAS_EEPROM: bool = false;
 /// Whether the receive gain's potentiometer is fitted.
 pub const HAS_POTENTIOMETER: bool = false;
+/// Whether the comparator's threshold rides on the level's average (AC-coupled slicer), or is the trigger level itself.
+pub const THRESHOLD_RIDES_ON_AVERAGE: bool = true;
 /// ADC channel of the trigger level.
 pub const TRIGGER_LEVEL_ADC: u8 = 1;
 /// ADC channel of the low trigger level: there is none.

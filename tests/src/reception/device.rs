@@ -4,9 +4,12 @@
 use super::Decoded;
 use mode_s::Frame;
 use twin::beast_stream::Reader;
-use twin::board::{Board, Playback};
+use twin::board::kind::{self, Kind};
+use twin::board::{Board, Playback, Setup};
+use twin::chip::flash::Flash;
 use twin::completed::Completed;
 use twin::front_end::PulseSource;
+use twin::image::flash_uf2;
 
 /// After the air is silent the last frame needs this long to come out, ms.
 const TAIL_MS: u64 = 3;
@@ -31,10 +34,20 @@ pub struct Device {
 impl Device {
     /// Switches one on.
     pub fn start() -> Self {
-        let mut board = match Board::power_on(&crate::image()) {
-            Ok(board) => board,
-            Err(error) => panic!("{error}"),
+        Self::start_on(kind::ADSBEE_1090)
+    }
+
+    /// The same on a board of this kind, with its own image.
+    pub fn start_on(kind: Kind) -> Self {
+        let mut flash = Flash::new(kind.flash_bytes, *b"SQUITTER");
+        if let Err(error) = flash_uf2(&crate::image_of(kind.name), &mut flash) {
+            panic!("{error}");
+        }
+        let setup = Setup {
+            kind,
+            ..Setup::default()
         };
+        let mut board = Board::new(flash, &setup);
         let ready = board
             .wait_for_capture()
             .and_then(|()| board.wait_for_console());
