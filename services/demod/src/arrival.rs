@@ -11,7 +11,9 @@
 //! logarithmic detector falls slowly, and a pulse's width may be 50 ns off (Annex 10 Volume IV, 3.1.2.2.1). Nor are the preamble's: a slicer that follows the
 //! level has not settled there.
 //!
-//! A window that is not low before and high behind shows no edge and is passed over, as is one that a single word of the ring does not hold: a second word would cost as much as another edge. Each edge gives its distance from where the first sampler expects it; the mean moves the arrival, the scatter is its uncertainty.
+//! A window that is not low before and high behind shows no edge and is passed over, as is one that a single word of the ring does not hold: a second word would cost as much as
+//! another edge. Each edge gives its distance from where the first sampler expects it; the mean moves the arrival, the scatter is its uncertainty. Where the edges scatter to
+//! the windows' rim, some were missed, and they are looked for again where the mean points; where there are too few, a little later.
 //! Only the first [`MOST_EDGES`] edges of the first 56 bits are asked: more would cost more than they tell, and a sender's clock 50 ppm off moves their mean by 2 ns at most.
 //!
 //! What is told is the preamble's first pulse as the data block places it: a transponder may send that block 50 ns early or late (Annex 10 Volume IV, 3.1.2.2.5.1), the
@@ -21,7 +23,7 @@
 //! noise, and the board's [`Calibration`] knows that.
 //!
 //! Fixed point: a tick (8.33 ns) has 256 parts; a place in the ring has 16 bits of samples and 16 of fraction, so that it wraps as the ring does.
-//! Budget: 50 cycles an edge, 1 600 in all; the loop is written so that it stays in the core's eight registers.
+//! Budget: 45 cycles an edge, 1 550 in all; number, distances and squares are summed in one word so that the loop stays in the core's registers.
 
 use crate::calibration::Calibration;
 use crate::grid::Grid;
@@ -40,16 +42,20 @@ const BIT: u32 = place(120);
 const HALF_BIT: u32 = place(60);
 /// Of the eight samples around an edge those before the sample at or before it, as places.
 const BEFORE: u32 = 3 << FRACTION;
-/// Bits of fraction of an edge's distance: a sample has 128.
-const OFF_FRACTION: u32 = 7;
-/// Parts of a tick in the least step of such a distance: 7 ticks times 256 over 128.
-const PARTS_A_STEP: i32 = 14;
-/// A distance is kept from the window's first sample, half a sample short: it is never negative, and three and a half samples where an edge lies right where it is expected.
-const CENTRE: i32 = 7 << OFF_FRACTION >> 1;
+/// An edge's distance from the window's first sample in steps of an eighth of a sample, 0.875 ticks; [`CENTRE`] steps where it lies right where it is expected.
+const STEP_FRACTION: u32 = 3;
+const CENTRE: i32 = 7 << STEP_FRACTION >> 1;
+/// Parts of a tick in such a step.
+const STEP_PARTS: i32 = (ARRIVAL_TICKS_PER_SAMPLE as i32) << (8 - STEP_FRACTION);
+/// A distance is rounded down, by 0 to 6 sevenths of a step and one more: by half a tick on the average.
+const ROUNDED_OFF: i32 = 128;
+/// What a place is kept ahead by, so that its own rounding never takes it below a whole sample.
+const AHEAD: u32 = 1 << 9;
+/// Ticks before the first sampler's first high sample that an edge is expected.
+const EARLY: i32 = 4;
 /// Bits asked in a go, and the first bit of each go: behind the first byte, in which a slicer that follows the level has not settled yet, to the end of the first 56 bits.
 const GO_BITS: u32 = 24;
 const FIRST_BIT: u32 = 8;
-const GOES: usize = 2;
 /// Edges asked at most.
 const MOST_EDGES: u32 = 20;
 /// Fewest edges that are an arrival.
@@ -57,14 +63,20 @@ const LEAST_EDGES: u32 = 8;
 /// Edges taken off where the mean's uncertainty is reckoned: the scatter of few edges is itself uncertain, and 3.3 standard uncertainties shall be about what Student's t demands
 /// for 99.9 %.
 const UNCERTAIN_EDGES: u32 = 4;
-/// A mean beyond this is measured again from where it points, parts of a tick: windows at whose rim edges were missed. A sample.
-const RECENTRE: u32 = 7 * 256;
+/// Ticks later that edges are looked for where there were too few.
+const LATER: i32 = 20;
+/// Times that edges are looked for.
+const MOST_LOOKS: u32 = 3;
+/// Squared standard deviations of an edge by which the mean must be clear of the window's rim, where edges would be missed; else it is measured again from where it points.
+const CLEAR: u32 = 9;
+/// Variance that the samples' distance of eight steps alone gives, in 1/4096 of a squared step.
+const OF_SAMPLES: u32 = 64 * 4096 / 12;
 /// Least uncertainty, parts of a tick: what transponders' rise times of 50 to 100 ns and the grid of whole ticks leave (4.2 ns).
-const LEAST_SIGMA: u32 = 128;
+const LEAST_SIGMA: u32 = 160;
 /// The same where the level is not known, and with it the delay: 20 ns.
 const UNLEVELLED_SIGMA: u32 = 614;
 /// Uncertainty of an arrival from the first sampler alone, parts of a tick: one of its samples, 125 ns. In noise a preamble may fit best two samples off, and there too few
-/// edges are found: at 12 dB in four frames of a thousand.
+/// edges may be found.
 pub(crate) const COARSE_SIGMA: u16 = 15 * 256;
 
 /// So many ticks as a place, rounded.
@@ -107,26 +119,36 @@ impl Arrival {
 /// The second sampler's samples, in ticks.
 pub(crate) type Samples = Grid<ARRIVAL_TICKS_PER_SAMPLE, 2048, 19>;
 
-/// Sums over edges.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    /// Edges in the upper half, their distances in the lower: steps of 1/128 sample. 20 times 1024 fit.
-    packed: u32,
-    squares: u32,
+/// Sums over edges in one word: their number from bit 26 on, the squares of their distances from the centre from bit 11 on, the distances below. 20 edges fit.
+const AN_EDGE: u32 = 1 << 26;
+const SQUARE: u32 = 1 << 11;
+const _: () = assert!(SQUARE > MOST_EDGES * (2 * CENTRE) as u32);
+const _: () = assert!(MOST_EDGES * (CENTRE * CENTRE) as u32 <= (AN_EDGE - 1) / SQUARE);
+
+/// What an edge adds, by its distance. A window that shows none has a distance of 0 or, modulo 64, of 57 to 63, and adds nothing.
+static OF_EDGE: [u32; 64] = of_edge();
+/// Low samples of a window of eight that shows an edge, low before and high behind, in steps less one; 0 for any other.
+static LOWS: [u8; 256] = lows();
+/// 4096 over a number of edges, rounded: the core has no division.
+static SHARES: [u16; MOST_EDGES as usize + 1] = shares();
+
+const fn of_edge() -> [u32; 64] {
+    let mut table = [0; 64];
+    let mut distance = 1;
+    while distance < 2 * CENTRE {
+        let off = distance - CENTRE;
+        table[distance as usize] = AN_EDGE + (off * off) as u32 * SQUARE + distance as u32;
+        distance += 1;
+    }
+    table
 }
 
-const AN_EDGE: u32 = 1 << 16;
-
-/// Low samples of a window of eight that shows an edge, low before and high behind; 0 for any other.
-static LOWS: [u8; 256] = lows();
-/// 4096 over a number of edges: the core has no division.
-static SHARES: [u16; MOST_EDGES as usize + 1] = shares();
 const fn lows() -> [u8; 256] {
     let mut table = [0; 256];
     let mut window = 0;
     while window < 256 {
         if window & 0x81 == 0x01 {
-            table[window] = (window as u8).count_zeros() as u8;
+            table[window] = ((window as u8).count_zeros() << STEP_FRACTION) as u8 - 1;
         }
         window += 1;
     }
@@ -137,7 +159,7 @@ const fn shares() -> [u16; MOST_EDGES as usize + 1] {
     let mut table = [0; MOST_EDGES as usize + 1];
     let mut edges = (LEAST_EDGES - UNCERTAIN_EDGES) as usize;
     while edges < table.len() {
-        table[edges] = (4096 / edges) as u16;
+        table[edges] = ((4096 + edges / 2) / edges) as u16;
         edges += 1;
     }
     table
@@ -146,79 +168,108 @@ const fn shares() -> [u16; MOST_EDGES as usize + 1] {
 /// Where the comparator showed a frame with these bits, which the first sampler saw begin at `coarse` (ticks).
 #[inline(never)]
 pub(crate) fn measure(ring: &ArrivalRing, samples: &Samples, coarse: u64, frame: &[u8]) -> Arrival {
-    let mut expected = (coarse << 8) as i64;
-    let mut sigma = u32::from(COARSE_SIGMA);
-    for _ in 0..2 {
-        let ticks = (expected >> 8) as u64;
-        let (sample, rest) = samples.last(ticks + PREAMBLE_TICKS);
-        let sums = leading_edges(ring, (sample << FRACTION) + rest * place(1), frame);
-        let edges = sums.packed / AN_EDGE;
+    let goes = goes(frame);
+    let (sample, rest) = samples.last(coarse + PREAMBLE_TICKS);
+    let first_bit = (sample << FRACTION) + rest * place(1);
+    let mut found = None;
+    // Ticks from there to where it is expected.
+    let mut off = -EARLY;
+    for _ in 0..MOST_LOOKS {
+        let at = first_bit.wrapping_add_signed(off * place(1).cast_signed());
+        let sums = leading_edges(ring, at, goes);
+        let edges = sums / AN_EDGE;
         if !(LEAST_EDGES..=MOST_EDGES).contains(&edges) {
-            break;
+            off += LATER;
+            continue;
         }
         let [share, wide_share] =
             [edges, edges - UNCERTAIN_EDGES].map(|edges| u32::from(SHARES[edges as usize]));
-        // Both with eight bits of fraction less than they could have: the squares must fit.
-        let mean = ((sums.packed % AN_EDGE) * share) >> 12;
-        let off = (sums.packed % AN_EDGE) as i32 - CENTRE * edges as i32;
-        let parts = (off * PARTS_A_STEP * share as i32) >> 12;
-        expected = ((ticks as i64) << 8) + i64::from(parts);
-        let mean_square = ((sums.squares >> 4) * share) >> 8;
-        let of_one = mean_square.saturating_sub(mean * mean);
-        let of_mean = (of_one * wide_share) >> 12;
-        sigma = of_mean * (PARTS_A_STEP * PARTS_A_STEP) as u32;
-        sigma = root(sigma + LEAST_SIGMA * LEAST_SIGMA);
-        if parts.unsigned_abs() <= RECENTRE {
+        // Of the distances from the centre: mean in 1/64 step, mean square and variance in 1/4096 of a squared step.
+        let sum = (sums % SQUARE).cast_signed() - CENTRE * edges.cast_signed();
+        let mean = (sum * share.cast_signed() + 32) >> 6;
+        let mean_square = sums % AN_EDGE / SQUARE * share;
+        let variance = mean_square.saturating_sub((mean * mean).cast_unsigned());
+        let parts = (off << 8) + ((mean * STEP_PARTS) >> 6) + ROUNDED_OFF;
+        found = Some((parts, (variance * wide_share) >> 12));
+        let rim = (CENTRE << 6) - mean.abs();
+        if (rim * rim).cast_unsigned() > CLEAR * variance.max(OF_SAMPLES) {
             break;
         }
+        off = parts >> 8;
     }
+    let Some((parts, variance)) = found else {
+        return Arrival {
+            ticks: coarse,
+            parts: 0,
+            sigma: COARSE_SIGMA,
+        };
+    };
+    let arrival = (coarse << 8).wrapping_add_signed(i64::from(parts));
+    const { assert!(STEP_PARTS * STEP_PARTS * 4 == 49 * 4096) };
+    let square = variance * 49 / 4 + LEAST_SIGMA * LEAST_SIGMA;
     Arrival {
-        ticks: (expected >> 8) as u64,
-        parts: expected as u8,
-        sigma: sigma.min(u32::from(COARSE_SIGMA)) as u16,
+        ticks: arrival >> 8,
+        parts: arrival as u8,
+        sigma: root(square.min(u32::from(COARSE_SIGMA).pow(2))) as u16,
     }
 }
 
-/// Measures the leading edges of a frame whose first bit begins at this place of the ring.
-#[inline(never)]
-fn leading_edges(ring: &ArrivalRing, first_bit: u32, frame: &[u8]) -> Sums {
+/// Sums over the leading edges of a frame whose first bit begins at this place of the ring.
+#[inline(always)]
+fn leading_edges(ring: &ArrivalRing, first_bit: u32, goes: [u32; 2]) -> u32 {
     // Counted up to zero: the sign tells when there are enough.
-    let mut packed = 0u32.wrapping_sub(MOST_EDGES * AN_EDGE);
-    let mut squares = 0u32;
-    let mut at = first_bit.wrapping_add(FIRST_BIT * BIT).wrapping_sub(BEFORE);
-    'frame: for go in frame.windows(4).step_by(GO_BITS as usize / 8).take(GOES) {
-        let &[a, b, c, d] = go else { break };
-        // The 24 bits behind the first byte, and the one before them, which tells whether the first continues a pulse; a 1 behind them ends the loop.
-        let mut bits = u32::from_be_bytes([a, b, c, d]) << (31 - GO_BITS) | 1 << (30 - GO_BITS);
-        while bits << 2 != 0 {
-            let behind_one = bits.cast_signed() < 0;
-            bits <<= 1;
+    let none = 0u32.wrapping_sub(MOST_EDGES * AN_EDGE);
+    let mut at = first_bit
+        .wrapping_add(FIRST_BIT * BIT + AHEAD)
+        .wrapping_sub(BEFORE);
+    let mut sums = go(ring, at, goes[0], none);
+    if sums.cast_signed() < 0 {
+        at = at.wrapping_add(GO_BITS * BIT);
+        sums = go(ring, at, goes[1], sums);
+    }
+    sums.wrapping_sub(none)
+}
+
+/// Adds to the sums what the edges of a go's bits are, whose first window stands at a place, until there are enough.
+#[inline(never)]
+fn go(ring: &ArrivalRing, at: u32, bits: u32, sums: u32) -> u32 {
+    let (mut at, mut bits, mut sums) = (at, bits, sums);
+    while bits << 2 != 0 {
+        let now = bits << 1;
+        'bit: {
             let mut from = at;
-            at = at.wrapping_add(BIT);
-            if bits.cast_signed() >= 0 {
+            if now.cast_signed() >= 0 {
                 from = from.wrapping_add(HALF_BIT);
-            } else if !behind_one {
-                continue;
+            } else if bits.cast_signed() >= 0 {
+                break 'bit;
             }
             let Some(window) = ring.eight(from) else {
-                continue;
+                break 'bit;
             };
             let lows = u32::from(LOWS[usize::from(window)]);
-            if lows != 0 {
-                let past = from << (32 - FRACTION) >> (32 - OFF_FRACTION);
-                let distance = (lows << OFF_FRACTION).wrapping_sub(past);
-                squares = squares.wrapping_add(distance.wrapping_mul(distance));
-                packed = packed.wrapping_add(distance + AN_EDGE);
-                if packed.cast_signed() >= 0 {
-                    break 'frame;
-                }
+            let past = from << (32 - FRACTION) >> (32 - STEP_FRACTION);
+            let distance = lows.wrapping_sub(past) % OF_EDGE.len() as u32;
+            sums = sums.wrapping_add(OF_EDGE[distance as usize]);
+            if sums.cast_signed() >= 0 {
+                return sums;
             }
         }
+        at = at.wrapping_add(BIT);
+        bits = now;
     }
-    Sums {
-        packed: packed.wrapping_add(MOST_EDGES * AN_EDGE),
-        squares,
-    }
+    sums
+}
+
+/// The bits of the two goes: the 24 behind the first byte's or the fourth's, and the one before them, which tells whether the first continues a pulse; a 1 behind them ends
+/// the go.
+#[inline(always)]
+fn goes(frame: &[u8]) -> [u32; 2] {
+    let go = |bytes: &[u8]| match *bytes {
+        [a, b, c, d] => u32::from_be_bytes([a, b, c, d]) << (31 - GO_BITS) | 1 << (30 - GO_BITS),
+        _ => 0,
+    };
+    let of = |from: usize| frame.get(from..from + 4).map_or(0, go);
+    [of(0), of(GO_BITS as usize / 8)]
 }
 
 /// The square root, rounded down.
@@ -288,7 +339,7 @@ mod tests {
         let begin = 5_000_000 * 256;
         let ring = sampled(begin);
         let mut coarse_alone = 0;
-        for off in -40i64..=40 {
+        for off in -48i64..=48 {
             let coarse = (begin / 256).wrapping_add_signed(off);
             let found = measure(&ring, &Samples::new(0), coarse, &FRAME);
             let error = (found.ticks * 256 + u64::from(found.parts)).abs_diff(begin);

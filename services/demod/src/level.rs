@@ -3,32 +3,31 @@
 //! ```text
 //!   conversions   |        |        |        |        |        every 272.5 ticks (2.27 µs, 109 cycles of 48 MHz)
 //!   pulses        ##__##____####__##__##____##__##____##
-//!   counted       those held 30 to 54 ticks (0.25 to 0.45 µs) behind a pulse's leading edge
+//!   counted       those held 30 to 52 ticks (0.25 to 0.44 µs) behind a pulse's leading edge
 //! ```
 //! A conversion holds its input at its start. The period is no whole number of microseconds, so the instants walk over the bits and a fifth of them meet a pulse,
-//! past the detector's rise: 10 in a long frame, 5 in a short one.
+//! past the detector's rise: 9 in a long frame, 5 in a short one.
 //!
 //! [`ENOUGH`] of them are a level: at 20 dB over the noise they scatter by half a dB.
 
 use crate::calibration::Calibration;
 use crate::grid::Grid;
-use crate::ring::LevelRing;
+use crate::ring::{LEVEL_WORDS, LevelRing};
 
 /// Half ticks between two conversions: 109 cycles of 48 MHz.
 pub const LEVEL_HALF_TICKS: u32 = 545;
 /// Half ticks from the first capture sample to the first conversion's hold.
 pub const LEVEL_START_HALF_TICKS: u64 = 8;
 
-/// Half ticks of a bit, and of half of one.
+/// Half ticks of a bit.
 const BIT: u32 = 240;
 /// A conversion's place in its bit is counted in fives: a period is two bits and 13 of them, so what is left of a division by five stays the same in a whole frame.
 const GRAIN: u32 = 5;
-const PLACES: usize = (BIT / GRAIN) as usize;
-const HALF_PLACES: u32 = PLACES as u32 / 2;
-const PERIOD_PLACES: usize = ((LEVEL_HALF_TICKS - 2 * BIT) / GRAIN) as usize;
-const _: () = assert!(LEVEL_HALF_TICKS == 2 * BIT + PERIOD_PLACES as u32 * GRAIN);
-/// Places in which a pulse is held, the last of them in part.
-const PLACES_HELD: u32 = (HELD - RISEN).div_ceil(GRAIN);
+const HALF_PLACES: u32 = BIT / GRAIN / 2;
+const PERIOD_PLACES: u32 = (LEVEL_HALF_TICKS - 2 * BIT) / GRAIN;
+const _: () = assert!(LEVEL_HALF_TICKS == 2 * BIT + PERIOD_PLACES * GRAIN);
+/// Places in the whole of which a pulse is held.
+const PLACES_HELD: u32 = (HELD - RISEN) / GRAIN;
 /// Half ticks behind a pulse's leading edge from which on the detector has risen, and up to which the shortest pulse holds: 0.45 µs (Annex 10 Volume IV, table 3-2).
 const RISEN: u32 = 60;
 const HELD: u32 = 108;
@@ -38,28 +37,44 @@ const PREAMBLE: u64 = 1920;
 const LEAST: u32 = 2;
 /// Conversions after which no more are asked.
 const ENOUGH: u32 = 4;
+/// A conversion in the sums.
+const A_CODE: u32 = 1 << 16;
 
-/// From each place to the next conversion that may meet a pulse: conversions in bits 0-3, bits in 4-7, the place there from 8 on. Three of five are never looked at.
-static STEPS: [u16; PLACES] = steps();
+/// Where a conversion falls, in one word: its index, the place in its half of a bit, the half, and the bit.
+const PLACE_SHIFT: u32 = 16;
+const HALF_SHIFT: u32 = 21;
+const BIT_SHIFT: u32 = 24;
+/// Halves and places together.
+const HALVES_AND_PLACES: usize = 1 << (HALF_SHIFT - PLACE_SHIFT + 1);
 
-const fn steps() -> [u16; PLACES] {
-    let mut steps = [0; PLACES];
+/// From each half and place to the next conversion that may meet a pulse. Three of five are never looked at.
+static STEPS: [u32; HALVES_AND_PLACES] = steps();
+
+const fn steps() -> [u32; HALVES_AND_PLACES] {
+    let mut steps = [0; HALVES_AND_PLACES];
     let mut from = 0;
-    while from < PLACES {
-        let (mut conversions, mut place) = (0, from);
+    while from < 2 * HALF_PLACES {
+        let (mut conversions, mut to) = (0, from);
         loop {
             conversions += 1;
-            place += PERIOD_PLACES;
-            if (place % PLACES % (PLACES / 2)) < PLACES_HELD as usize {
+            to += 4 * HALF_PLACES + PERIOD_PLACES;
+            if to % HALF_PLACES < PLACES_HELD {
                 break;
             }
         }
-        let bits = 2 * conversions + place / PLACES;
-        assert!(conversions < 16 && bits < 16);
-        steps[from] = (conversions | bits << 4 | (place % PLACES) << 8) as u16;
+        let start = fall(from);
+        steps[(start >> PLACE_SHIFT) as usize] = (fall(to) + conversions).wrapping_sub(start);
         from += 1;
     }
     steps
+}
+
+/// So many places behind the first bit's start.
+const fn fall(places: u32) -> u32 {
+    let halves = places / HALF_PLACES;
+    ((halves / 2) << BIT_SHIFT)
+        | ((halves % 2) << HALF_SHIFT)
+        | ((places % HALF_PLACES) << PLACE_SHIFT)
 }
 
 /// The converter's conversions, in half ticks.
@@ -74,60 +89,52 @@ pub(crate) fn measure(
     arrival: u64,
     frame: &[u8],
 ) -> Option<i16> {
-    let (index, past) = conversions.last(2 * arrival + PREAMBLE);
-    let (mut sum, mut count) = (0, 0);
-    // How far the next conversion is behind the bit it meets, from RISEN behind the leading edge of a 1 on.
-    let mut index = index.wrapping_add(1);
-    let mut offset = LEVEL_HALF_TICKS - past + BIT - RISEN;
-    let mut bit = 0u32.wrapping_sub(1);
+    // Counted from RISEN behind the leading edge of a 1 on.
+    let (index, past) = conversions.last(2 * arrival + PREAMBLE + u64::from(RISEN));
+    let mut offset = LEVEL_HALF_TICKS - past;
+    let mut at = index.wrapping_add(1) % LEVEL_WORDS as u32;
     // A period is less than three bits; a loop would become a division.
-    const { assert!(LEVEL_HALF_TICKS + BIT - RISEN < 4 * BIT) };
-    if offset >= 2 * BIT {
-        offset -= 2 * BIT;
-        bit = 1;
+    const { assert!(LEVEL_HALF_TICKS < 3 * BIT) };
+    for _ in 0..2 {
+        if offset >= BIT {
+            offset -= BIT;
+            at += 1 << BIT_SHIFT;
+        }
     }
-    if offset >= BIT {
-        offset -= BIT;
-        bit = bit.wrapping_add(1);
-    }
-    // In fives, and a rest that stays.
+    // In fives.
     let mut place = (offset * 205) >> 10;
-    let held = if offset - place * GRAIN < HELD - RISEN - (PLACES_HELD - 1) * GRAIN {
-        PLACES_HELD
-    } else {
-        PLACES_HELD - 1
-    };
-    let bits = frame.len() as u32 * 8;
-    loop {
-        // Under the pulse of a 1, or under that of a 0. A conversion before the first bit is behind the last.
-        let (since, one) = if place < HALF_PLACES {
-            (place, 1)
-        } else {
-            (place - HALF_PLACES, 0)
-        };
-        if since < held && bit < bits && bit_of(frame, bit) == one {
-            sum += ring.code(index) & 0xFFF;
-            count += 1;
-            if count == ENOUGH {
+    if place >= HALF_PLACES {
+        place -= HALF_PLACES;
+        at += 1 << HALF_SHIFT;
+    }
+    at += place << PLACE_SHIFT;
+    if place >= PLACES_HELD {
+        at = next(at);
+    }
+    // The number in the upper half, counted up to zero, codes in the lower.
+    let mut sums = 0u32.wrapping_sub(ENOUGH * A_CODE);
+    let end = (frame.len() as u32 * 8) << BIT_SHIFT;
+    while at < end {
+        // The pulse of a 1 is in the first half of its bit, that of a 0 in the second.
+        let byte = frame.get((at >> (BIT_SHIFT + 3)) as usize).copied();
+        let bit = u32::from(byte.unwrap_or(0)) << BIT_SHIFT << (at << (29 - BIT_SHIFT) >> 29);
+        if (bit ^ at << (31 - HALF_SHIFT)).cast_signed() < 0 {
+            sums = sums.wrapping_add((ring.code(at) & 0xFFF) + A_CODE);
+            if sums.cast_signed() >= 0 {
                 break;
             }
         }
-        let step = STEPS.get(place as usize).copied().unwrap_or(0);
-        let step = u32::from(step);
-        index = index.wrapping_add(step & 0xF);
-        bit = bit.wrapping_add(step >> 4 & 0xF);
-        place = step >> 8;
-        if bit.wrapping_add(1) > bits {
-            break;
-        }
+        at = next(at);
     }
-    (count >= LEAST).then(|| calibration.level(sum, count))
+    let sums = sums.wrapping_add(ENOUGH * A_CODE);
+    let count = sums / A_CODE;
+    (count >= LEAST).then(|| calibration.level(sums % A_CODE, count))
 }
 
+/// The next conversion that may meet a pulse.
 #[inline(always)]
-fn bit_of(frame: &[u8], bit: u32) -> u32 {
-    let byte = frame.get((bit >> 3) as usize).copied().unwrap_or(0);
-    u32::from(byte) >> (7 - (bit & 7)) & 1
+fn next(at: u32) -> u32 {
+    at.wrapping_add(STEPS[(at >> PLACE_SHIFT) as usize % HALVES_AND_PLACES])
 }
 
 #[cfg(test)]

@@ -72,11 +72,12 @@ impl ArrivalRing {
     pub(crate) fn eight(&self, place: u32) -> Option<u8> {
         // Five bits of sample and sixteen of fraction are below the word's.
         const { assert!(ARRIVAL_WORDS == 1 << (32 - 21)) };
+        // The word first: with the sample in a register, too, `arrival` would have one more than the core.
+        let word = self.words[place as usize >> 21].load(Ordering::Relaxed);
         let sample = place << 11 >> 27;
         if sample > 24 {
             return None;
         }
-        let word = self.words[place as usize >> 21].load(Ordering::Relaxed);
         Some((word << sample >> 24) as u8)
     }
 }
