@@ -4,7 +4,8 @@
 //!   GNSS_PPS ─ counters ─ drivers::gnss_pps ─┐ ticks
 //!   GNSS_UART ─ nmea ─┬─ names, with ticks ──┴─▶ timebase ─▶ FrameTimes of a frame, Moment of a report
 //!                     ├─ fix ─▶ Gnss, position of the receiver
-//!                     └─ the sentence itself, for ports that pass it on
+//!                     ├─ the sentence itself, for ports that pass it on
+//!               ubx ◀─┴─ answers between sentences; messages back to GNSS_UART, if `GNSS_CONFIG` asks for them
 //! ```
 //! Where a sampler's FIFO has overflowed, samples are missing, and the ticks of frames and pulses no longer speak of one time: from then on no pulse is believed and no frame
 //! gets UTC, until the next start.
@@ -20,7 +21,9 @@ use mode_s::{CentiDegrees, Position};
 use nmea_0183::{Dimensions, Fix, Reader, Sentence};
 use report::{DAY_MS, FrameTimes, Gnss, Moment};
 use settings::Settings;
+use settings::choices::GnssConfig;
 use timebase::{Arrival, Name, Quality, State, Timebase};
+use ubx::Configurator;
 
 /// From a frame's leading edge at the antenna to the tick that the demodulator calls its arrival, less what a pulse on GNSS_PPS is late in the same count,
 /// nanoseconds. What half a sample and the detector take is already off by level (`demod`); this is the rest, measured on the board's model at 30 dB
@@ -41,6 +44,7 @@ pub struct Clock {
     wires: Option<(GnssUart, PpsCounter)>,
     stamps: PpsStamps,
     reader: Reader,
+    configurator: Configurator,
     /// Tick at which the sentence under way began.
     began: u64,
     fix: Fix,
@@ -70,6 +74,7 @@ impl Clock {
             wires,
             stamps: PpsStamps::new(),
             reader: Reader::new(),
+            configurator: Configurator::new(),
             began: 0,
             fix: Fix::new(),
             timebase: Timebase::new(),
@@ -90,6 +95,9 @@ impl Clock {
                 let _ = uart.request_baud(self.baud);
             }
         }
+        let has_wires = self.wires.is_some();
+        self.configurator
+            .want(has_wires && settings.gnss_config == GnssConfig::Ublox);
         self.timebase
             .set_delay_ns(settings.pps_delay_ns - ANTENNA_TO_TICK_NS);
     }
@@ -118,12 +126,22 @@ impl Clock {
         let Some((uart, _)) = &mut self.wires else {
             return false;
         };
+        // What finds no room now is due again in the next turn.
+        if let Some(message) = self.configurator.due(now_ms)
+            && uart.send(message)
+        {
+            self.configurator.sent(now_ms);
+        }
         for _ in 0..BYTES_A_TURN {
             let Some(byte) = uart.receive() else {
                 break;
             };
+            if self.configurator.feed(byte, now_ms) {
+                continue;
+            }
             if let Some(text) = self.reader.feed(byte) {
                 line(text);
+                self.configurator.sentence(text, now_ms);
                 let sentence = Sentence::parse(text);
                 self.fix.hear(&sentence, now_ms);
                 let quality = quality(&self.fix, now_ms);
@@ -153,6 +171,11 @@ impl Clock {
     /// Whether that was seen.
     pub fn is_broken(&self) -> bool {
         self.is_broken
+    }
+
+    /// What became of the GNSS receiver's configuration, and how often it came to an end, modulo 256.
+    pub fn configured(&self) -> (ubx::State, u8) {
+        (self.configurator.state(), self.configurator.ended())
     }
 
     /// The times of a frame.
@@ -298,7 +321,8 @@ pub struct Status<'a> {
 }
 
 impl core::fmt::Display for Status<'_> {
-    /// `state=LOCKED,fix=3,satellites=9,utc=12:00:07.250,bound_ns=160,clock_hz=120002400,deviation_ppb=20000,scatter_ns=12,pulses=…`; empty while unknown.
+    /// `state=LOCKED,fix=3,satellites=9,utc=12:00:07.250,bound_ns=160,clock_hz=120002400,deviation_ppb=20000,scatter_ns=12,pulses=…,config=OFF,refused_message=`; empty
+    /// while unknown.
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Self { clock, now } = self;
         let base = &clock.timebase;
@@ -368,6 +392,14 @@ impl core::fmt::Display for Status<'_> {
                 .wires
                 .as_ref()
                 .map_or(0, |(uart, _)| uart.received_lost())
-        )
+        )?;
+        let (config, message) = match clock.configurator.state() {
+            ubx::State::Off => ("OFF", ""),
+            ubx::State::Asking => ("ASKING", ""),
+            ubx::State::Configured => ("CONFIGURED", ""),
+            ubx::State::Refused(message) => ("REFUSED", message),
+            ubx::State::NoAnswer => ("NO_ANSWER", ""),
+        };
+        write!(f, ",config={config},refused_message={message}")
     }
 }

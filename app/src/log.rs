@@ -3,8 +3,8 @@
 //! | level | said |
 //! |---|---|
 //! | ERRORS | the crash that led to this start; stored settings that could not be read |
-//! | WARNINGS | stored values that were no good; frames lost between the cores; samples lost, so that there is no UTC any more |
-//! | INFO | settings stored; the image confirmed; messages for which a port had no room |
+//! | WARNINGS | stored values that were no good; a GNSS receiver that refused its configuration or does not answer; frames lost between the cores; samples lost, so that there is no UTC any more |
+//! | INFO | settings stored; the GNSS receiver configured; the image confirmed; messages for which a port had no room |
 //!
 //! `LOG_LEVEL` says from which level on. A line stands between whole messages, and never on a port whose protocol is binary.
 
@@ -24,6 +24,8 @@ pub struct Told {
     frames_lost: u32,
     is_broken: bool,
     is_confirmed: bool,
+    /// Ends of the GNSS receiver's configuration.
+    configured: u8,
     /// Messages dropped by CONSOLE and COMMS_UART.
     dropped: [u32; 2],
 }
@@ -86,6 +88,7 @@ impl Receiver {
                 format_args!("samples lost: no UTC until AT+REBOOT"),
             );
         }
+        self.log_configuration();
         let dropped = [
             self.console.port.counters().total().dropped,
             self.comms.port.counters().total().dropped,
@@ -104,6 +107,28 @@ impl Receiver {
         if self.confirm.is_confirmed() && !self.told.is_confirmed {
             self.told.is_confirmed = true;
             self.log(LogLevel::Info, format_args!("the image is confirmed"));
+        }
+    }
+
+    /// What became of the GNSS receiver's configuration.
+    fn log_configuration(&mut self) {
+        let (state, ended) = self.clock.configured();
+        if core::mem::replace(&mut self.told.configured, ended) == ended {
+            return;
+        }
+        match state {
+            ubx::State::Configured => {
+                self.log(LogLevel::Info, format_args!("GNSS receiver configured"));
+            }
+            ubx::State::Refused(message) => self.log(
+                LogLevel::Warnings,
+                format_args!("GNSS receiver refused {message}"),
+            ),
+            ubx::State::NoAnswer => self.log(
+                LogLevel::Warnings,
+                format_args!("GNSS receiver does not answer (AT+GNSS_CONFIG=OFF ends the asking)"),
+            ),
+            ubx::State::Off | ubx::State::Asking => {}
         }
     }
 }

@@ -33,6 +33,8 @@ pub enum Client {
     Gdl90,
     /// The crate gdl90, a second opinion; it is compiled in.
     Gdl90Crate,
+    /// pyubx2, on what is sent to a u-blox.
+    Ubx,
     /// gpsd, on NMEA that passes through.
     Gpsd,
     /// dump1090-mutability, Beast input.
@@ -43,6 +45,7 @@ pub enum Client {
 
 /// Lists of packages, by the environment's name.
 const SHARED: (&str, &str) = ("clients", "requirements.txt");
+const UBX: (&str, &str) = ("ubx", "ubx.txt");
 const DECODER: (&str, &str) = ("asterix-decoder", "asterix-decoder.txt");
 
 /// Where Debian keeps daemons, whatever the path says.
@@ -100,6 +103,7 @@ impl Client {
             Client::Asterix => (SHARED, "asterix_client.py", &[]),
             Client::AsterixDecoder => (DECODER, "asterix_decoder_client.py", &[]),
             Client::Tshark => (SHARED, "tshark_client.py", &[]),
+            Client::Ubx => (UBX, "ubx_client.py", &[]),
             Client::Gpsd => (SHARED, "gpsd_client.py", &[]),
             Client::Json => (
                 SHARED,

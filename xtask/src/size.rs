@@ -42,7 +42,7 @@ fn layer_of(name: &str) -> &'static str {
     match name {
         "mode_s" | "demod" | "tracker" | "trigger" | "report" | "reporter" | "settings"
         | "shell" | "store" => "services",
-        "nmea_0183" | "timebase" => "services",
+        "nmea_0183" | "timebase" | "ubx" => "services",
         "drivers" => "drivers",
         "hal" => "hal",
         "app" | "bootloader" => "image",

@@ -123,6 +123,15 @@ choices! {
 }
 
 choices! {
+    /// Who sets up the GNSS receiver (`GNSS_CONFIG`).
+    GnssConfig:
+    /// Its owner: nothing is sent to it.
+    Off = 0 "OFF" []
+    /// The device, which takes it for a u-blox.
+    Ublox = 1 "UBLOX" []
+}
+
+choices! {
     /// When decoded aircraft are reported (`ADSB_RX_PROTOCOL_INC`).
     Reporting:
     /// All once a second.

@@ -4,8 +4,9 @@
 //! other spellings of a stored value and not stored themselves.
 
 use crate::choices::{
-    AdsbStatistics, AltitudeOrder, BeastTimestamp, Decoded, GnssDecoded, GnssRaw, JsonProfile,
-    LogLevel, Nmea, Protocol, Raw, RawFilter, Reporting, RxSource, SystemStatistics, TriggerMode,
+    AdsbStatistics, AltitudeOrder, BeastTimestamp, Decoded, GnssConfig, GnssDecoded, GnssRaw,
+    JsonProfile, LogLevel, Nmea, Protocol, Raw, RawFilter, Reporting, RxSource, SystemStatistics,
+    TriggerMode,
 };
 use crate::kind::{Kind, MAX_TEXT, Value};
 use crate::port::Port;
@@ -53,6 +54,7 @@ pub enum Field {
     RxIcao = 57,
     PpsDelay = 59,
     Serial = 60,
+    GnssConfig = 61,
     /// View of `Decoded` and `Raw`.
     Protocol = 224,
     /// View of `Nmea`.
@@ -85,7 +87,7 @@ const fn switch(field: Field) -> FieldRow {
 const BAUD: (i32, i32) = (LOWEST_BAUD as i32, HIGHEST_BAUD as i32);
 
 /// Every field.
-pub static ROWS: [FieldRow; 37] = [
+pub static ROWS: [FieldRow; 38] = [
     row(Field::Decoded, Kind::Choice(Decoded::ALL)),
     row(Field::Raw, Kind::Choice(Raw::ALL)),
     row(Field::AdsbStatistics, Kind::Choice(AdsbStatistics::ALL)),
@@ -151,6 +153,7 @@ pub static ROWS: [FieldRow; 37] = [
             longest: MAX_TEXT as u8,
         },
     ),
+    row(Field::GnssConfig, Kind::Choice(GnssConfig::ALL)),
     row(Field::Protocol, Kind::Choice(Protocol::ALL)),
     row(Field::GnssRaw, Kind::Choice(GnssRaw::ALL)),
     switch(Field::SystemLog),
@@ -214,6 +217,7 @@ impl Field {
             Field::RxHeight => settings.rx_height_m,
             Field::RxIcao => settings.rx_icao as i32,
             Field::PpsDelay => settings.pps_delay_ns,
+            Field::GnssConfig => settings.gnss_config.code(),
             Field::Serial => return Value::Text(settings.serial),
         })
     }
@@ -283,6 +287,7 @@ impl Field {
             Field::RxHeight => settings.rx_height_m = number,
             Field::RxIcao => settings.rx_icao = number as u32,
             Field::PpsDelay => settings.pps_delay_ns = number,
+            Field::GnssConfig => settings.gnss_config = GnssConfig::from_code(number)?,
             Field::Serial => return None,
         }
         Some(())

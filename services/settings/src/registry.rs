@@ -312,6 +312,9 @@ pub static ENTRIES: &[Entry] = &[
     entry(Group::Asterix, "ASTERIX_SIC", &[], "<0-255>", "ASTERIX system identification code",
         setting(Scope::Device, &[Field::AsterixSic])),
 
+    entry(Group::Gnss, "GNSS_CONFIG", &[], "<OFF|UBLOX>",
+        "Who sets up the GNSS receiver (0:its owner, 1:this device, a u-blox)",
+        setting(Scope::Device, &[Field::GnssConfig])),
     entry(Group::Gnss, "GNSS_LOG", &[], "<CONSOLE|COMMS_UART>,<0-2>", "GNSS NMEA forwarding (0:none, 1:RMC only, 2:all)",
         setting(Scope::Port, &[Field::Nmea])),
     entry(Group::Gnss, "GNSS_RX_PROTOCOL_DECODED", &[], "<CONSOLE|COMMS_UART>,<0|3>",

@@ -1,8 +1,8 @@
 //! The whole set, plain values.
 
 use crate::choices::{
-    AltitudeOrder, BeastTimestamp, Decoded, JsonProfile, LogLevel, RawFilter, Reporting, RxSource,
-    TriggerMode,
+    AltitudeOrder, BeastTimestamp, Decoded, GnssConfig, JsonProfile, LogLevel, RawFilter,
+    Reporting, RxSource, TriggerMode,
 };
 use crate::port::{Port, PortSettings};
 use crate::text::Text;
@@ -73,6 +73,8 @@ pub struct Settings {
     pub rx_height_m: i32,
     /// The aircraft of `RX_POSITION=ICAO`.
     pub rx_icao: u32,
+    /// Who sets up the GNSS receiver.
+    pub gnss_config: GnssConfig,
     /// How late the pulse per second arrives (antenna cable), nanoseconds.
     pub pps_delay_ns: i32,
     /// Serial number instead of the flash's unique id; empty: that id.
@@ -119,6 +121,7 @@ impl Settings {
         rx_lon_e7: 0,
         rx_height_m: 0,
         rx_icao: 0,
+        gnss_config: GnssConfig::Off,
         pps_delay_ns: 0,
         serial: Text::EMPTY,
     };

@@ -19,6 +19,7 @@
 //! | `leap=insert` `leap=delete` | a leap second at the first midnight after the start |
 //! | `rollover=SECONDS` | the date steps back by 1024 weeks so long after the start |
 //! | `no-fix=A-B` `no-pps=A-B` `no-nmea=A-B` | seconds since power-on in which it lacks that; may be given again |
+//! | `ublox=KIND` | a u-blox that can be configured: `keys` (M9 and later), `messages` (up to M8), `ignores-keys`, `fixed-rate`, `deaf` |
 //! | `late=A-B:MS` `garbled=A-B:PPM` | seconds in which sentences are late, or bytes wrong |
 
 use std::ops::Range;
@@ -26,6 +27,7 @@ use std::str::FromStr;
 
 use super::gnss::Options;
 use super::gnss::calendar::{Leap, unix_s};
+use super::gnss::ublox::Ublox;
 use crate::chip::crystal::{Deviation, LARGEST_PPB, Ramp};
 
 const DAY_S: i64 = 86_400;
@@ -136,7 +138,7 @@ impl FromStr for Options {
                     "" => SettingError::Unknown {
                         key: key.into(),
                         known: "start, place, baud, cold, delay, jitter, sawtooth, pps-without-fix, leap, rollover, no-fix, no-pps, \
-                                no-nmea, late, garbled",
+                                no-nmea, late, garbled, ublox",
                     },
                     form => refused(key, value, form),
                 });
@@ -186,6 +188,14 @@ fn set(out: &mut Options, leap: &mut Option<bool>, key: &str, value: &str) -> Op
         "pps-without-fix" => match value {
             "0" | "1" => out.pps_without_fix = value == "1",
             _ => return Some("0 or 1"),
+        },
+        "ublox" => match value {
+            "keys" => out.ublox = Some(Ublox::Keys),
+            "messages" => out.ublox = Some(Ublox::Messages),
+            "ignores-keys" => out.ublox = Some(Ublox::IgnoresKeys),
+            "fixed-rate" => out.ublox = Some(Ublox::FixedRate),
+            "deaf" => out.ublox = Some(Ublox::Deaf),
+            _ => return Some("keys, messages, ignores-keys, fixed-rate or deaf"),
         },
         "leap" => match value {
             "insert" | "delete" => *leap = Some(value == "insert"),

@@ -19,6 +19,14 @@ pub trait Outside: Send + Any {
     /// Does what is due at [`Wires::now_ps`]. Afterwards `next_ps` must lie later.
     fn act(&mut self, wires: &mut Wires);
 
+    /// The UART whose far end it is, if it listens: [`Outside::hear`] gets what the chip sends there.
+    fn listens_to(&self) -> Option<usize> {
+        None
+    }
+
+    /// The chip has sent it these bytes; the last one is complete at this true time.
+    fn hear(&mut self, _bytes: &[u8], _now_ps: u128) {}
+
     /// The board's supply comes (`true`) or goes at this true time.
     fn power(&mut self, on: bool, now_ps: u128);
 

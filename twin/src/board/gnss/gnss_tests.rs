@@ -67,7 +67,7 @@ fn sentences_follow_their_second_and_pulses_last_100_ms() {
     let heard = listen(&mut Gnss::new(options(), NETS), 6, 0);
     assert_eq!(heard.bursts[5].0, (5_370 + 120) * MS_PS);
     let pair: Vec<_> = heard.edges[..2].to_vec();
-    assert_eq!(pair[1].0 - pair[0].0, PULSE_PS);
+    assert_eq!(pair[1].0 - pair[0].0, 100 * MS_PS);
     assert_eq!((pair[0].1, pair[1].1), (true, false));
 }
 

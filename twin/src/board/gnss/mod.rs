@@ -5,8 +5,8 @@
 //!              └─ NMEA of that second (nmea) begins `delay` later                         always, with what is known
 //!   power ─ time known after 1/4 of the cold start ─ fix after all of it
 //! ```
-//! Faults are intervals of true time since power-on: no fix, no PPS, no NMEA, late NMEA, garbled NMEA. The receiver knows no commands:
-//! what the device sends it is counted and has no effect. On boards with an enable net the receiver is off while that is low (looked
+//! Faults are intervals of true time since power-on: no fix, no PPS, no NMEA, late NMEA, garbled NMEA. What the device sends it
+//! has no effect unless it is a u-blox ([`ublox`]). On boards with an enable net the receiver is off while that is low (looked
 //! at once a second).
 //!
 //! Assumed: the delay of the sentences, the cold start, all of [`pps::Jitter`]; no public document names the module on the board.
@@ -17,6 +17,7 @@ use crate::snapshot::Part;
 pub mod calendar;
 pub mod nmea;
 pub mod pps;
+pub mod ublox;
 
 use std::ops::Range;
 
@@ -25,11 +26,13 @@ use crate::source::random::Random;
 use calendar::Calendar;
 use nmea::{Place, State};
 use pps::Jitter;
+use ublox::{Memory, Ublox};
 
+const US_PS: u128 = 1_000_000;
 const SECOND_PS: u128 = 1_000_000_000_000;
 const MS_PS: u128 = 1_000_000_000;
-/// Width of the pulse (usual default of such receivers).
-const PULSE_PS: u128 = 100 * MS_PS;
+/// From a command to its answer.
+const ANSWER_PS: u128 = 20 * MS_PS;
 /// Satellites used with a fix.
 const SATELLITES: u8 = 9;
 
@@ -63,6 +66,8 @@ pub struct Options {
     pub pps_without_fix: bool,
     pub outages: Outages,
     pub seed: u64,
+    /// A u-blox, which can be told things; `None`: some receiver that cannot.
+    pub ublox: Option<Ublox>,
 }
 
 impl Default for Options {
@@ -88,6 +93,7 @@ impl Default for Options {
             pps_without_fix: false,
             outages: Outages::default(),
             seed: 1,
+            ublox: None,
         }
     }
 }
@@ -113,6 +119,10 @@ pub struct Gnss {
     next_burst: u64,
     last_burst_ps: u128,
     falls_at_ps: Option<u128>,
+    /// What a u-blox was told since it was switched on.
+    pub memory: Memory,
+    /// Answers of it, and when they are due.
+    answers: Option<(u128, Vec<u8>)>,
 }
 
 fn within(ranges: &[Range<u64>], ms: u64) -> bool {
@@ -131,6 +141,8 @@ impl Gnss {
             next_burst: 0,
             last_burst_ps: 0,
             falls_at_ps: None,
+            memory: Memory::default(),
+            answers: None,
         }
     }
 
@@ -182,9 +194,15 @@ impl Gnss {
             .is_none_or(|pin| wires.levels & (1 << pin) != 0);
         match (self.supplied && enabled, self.on_since_ps) {
             (true, None) => self.on_since_ps = Some(wires.now_ps),
-            (false, Some(_)) => self.on_since_ps = None,
+            (false, Some(_)) => self.switch_off(),
             _ => {}
         }
+    }
+
+    fn switch_off(&mut self) {
+        self.on_since_ps = None;
+        self.memory = Memory::default();
+        self.answers = None;
     }
 
     fn pulse(&mut self, wires: &mut Wires) {
@@ -196,7 +214,7 @@ impl Gnss {
             self.has_fix(second_ps) || self.options.pps_without_fix && self.knows_time(second_ps);
         if allowed && !within(&self.options.outages.pps, (second_ps / MS_PS) as u64) {
             wires.drive(self.nets.pps, true);
-            self.falls_at_ps = Some(wires.now_ps + PULSE_PS);
+            self.falls_at_ps = Some(wires.now_ps + u128::from(self.memory.pulse_us) * US_PS);
         }
     }
 
@@ -219,6 +237,9 @@ impl Gnss {
             satellites: if fix { SATELLITES } else { 0 },
         };
         let mut bytes = nmea::burst(&state);
+        if self.options.ublox.is_some() {
+            bytes = nmea::chosen(&state, |letters| self.memory.sends(letters));
+        }
         let garbled = self.options.outages.garbled.iter();
         if let Some((_, per_million)) = garbled.clone().find(|(r, _)| r.contains(&ms)) {
             let mut random = Random::new(self.options.seed ^ n << 16);
@@ -237,12 +258,18 @@ impl Outside for Gnss {
         let next = self
             .pulse_ps(self.next_pulse)
             .min(self.burst_ps(self.next_burst));
-        Some(self.falls_at_ps.map_or(next, |fall| fall.min(next)))
+        let answer = self.answers.as_ref().map(|(at, _)| *at);
+        [self.falls_at_ps, answer, Some(next)]
+            .into_iter()
+            .flatten()
+            .min()
     }
 
     fn act(&mut self, wires: &mut Wires) {
         let now_ps = wires.now_ps;
-        if self.falls_at_ps == Some(now_ps) {
+        if let Some((_, answers)) = self.answers.take_if(|(at, _)| *at == now_ps) {
+            wires.send(self.nets.uart, &answers);
+        } else if self.falls_at_ps == Some(now_ps) {
             self.falls_at_ps = None;
             wires.drive(self.nets.pps, false);
         } else if self.pulse_ps(self.next_pulse) == now_ps {
@@ -252,7 +279,23 @@ impl Outside for Gnss {
         }
     }
 
+    fn listens_to(&self) -> Option<usize> {
+        self.options.ublox.map(|_| self.nets.uart)
+    }
+
+    fn hear(&mut self, bytes: &[u8], now_ps: u128) {
+        let (Some(kind), Some(_)) = (self.options.ublox, self.on_since_ps) else {
+            return;
+        };
+        let answers = self.memory.hear(kind, bytes);
+        if !answers.is_empty() {
+            let (_, waiting) = self.answers.get_or_insert((now_ps + ANSWER_PS, Vec::new()));
+            waiting.extend(answers);
+        }
+    }
+
     fn power(&mut self, on: bool, now_ps: u128) {
+        self.switch_off();
         self.supplied = on;
         self.on_since_ps = (on && self.nets.enable.is_none()).then_some(now_ps);
     }

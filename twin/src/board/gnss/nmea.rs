@@ -93,6 +93,27 @@ pub fn burst(state: &State) -> Vec<u8> {
     out
 }
 
+/// Those that are chosen by their three letters, with GSV, GLL and VTG, which a u-blox sends unless told otherwise.
+pub fn chosen(state: &State, sends: impl Fn(&str) -> bool) -> Vec<u8> {
+    let mut bytes = burst(state);
+    let position = state.place.map_or(",,,".into(), |p| {
+        format!(
+            "{},{}",
+            angle(p.latitude, 2, ['N', 'S']),
+            angle(p.longitude, 3, ['E', 'W'])
+        )
+    });
+    sentence(&mut bytes, &format!("GNGLL,{position},,V,N"));
+    sentence(&mut bytes, "GNVTG,,T,,M,0.004,N,0.007,K,A");
+    sentence(&mut bytes, &format!("GPGSV,1,1,{:02}", state.satellites));
+    let lines = bytes.split_inclusive(|byte| *byte == b'\n');
+    lines
+        .filter(|line| sends(std::str::from_utf8(&line[3..6]).unwrap_or_default()))
+        .flatten()
+        .copied()
+        .collect()
+}
+
 /// `$`, the text, `*` and the XOR of all of the text.
 fn sentence(out: &mut Vec<u8>, text: &str) {
     let sum = text.bytes().fold(0, |sum, byte| sum ^ byte);

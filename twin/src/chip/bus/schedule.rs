@@ -78,6 +78,9 @@ impl Bus {
             Actor::Uart(n) => {
                 let rts_n = self.uart[n].rts_n();
                 self.uart[n].advance(now);
+                if !self.uart[n].outside_hears.is_empty() {
+                    self.tell_outside(n);
+                }
                 if self.uart[n].watched || self.uart[n].rts_n() != rts_n {
                     self.resolve_pins();
                 }

@@ -54,6 +54,9 @@ impl Bus {
 
     /// Attaches something that acts by itself.
     pub fn attach(&mut self, device: Box<dyn Outside>) {
+        if let Some(uart) = device.listens_to() {
+            self.uart[uart].is_heard_outside = true;
+        }
         self.surroundings.devices.push((device, u64::MAX));
         self.time_surroundings();
     }
@@ -103,6 +106,19 @@ impl Bus {
         }
         self.surroundings.next = devices.iter().map(|d| d.1).min().unwrap_or(u64::MAX);
         self.surroundings.devices = devices;
+    }
+
+    /// Hands on what the far end of a UART has heard.
+    #[cold]
+    pub(super) fn tell_outside(&mut self, uart: usize) {
+        let bytes = std::mem::take(&mut self.uart[uart].outside_hears);
+        let now_ps = self.true_ps();
+        for (device, _) in &mut self.surroundings.devices {
+            if device.listens_to() == Some(uart) {
+                device.hear(&bytes, now_ps);
+            }
+        }
+        self.time_surroundings();
     }
 
     /// The far end of a UART sends bytes.

@@ -104,6 +104,9 @@ pub struct Uart {
     pub far: FarEnd,
     /// Bytes the far end has heard, with the cycle at which each was complete.
     pub sent: VecDeque<(u64, u8)>,
+    /// Something outside listens at the far end; and what it has not been told yet.
+    pub is_heard_outside: bool,
+    pub outside_hears: Vec<u8>,
     /// Characters lost because the receive FIFO was full.
     pub overruns: u64,
 }
@@ -135,6 +138,8 @@ impl Default for Uart {
             watched_to: 0,
             far: FarEnd::default(),
             sent: VecDeque::new(),
+            is_heard_outside: false,
+            outside_hears: Vec::new(),
             overruns: 0,
         }
     }
@@ -156,6 +161,8 @@ impl Uart {
             wave,
             far: std::mem::take(&mut self.far),
             sent: std::mem::take(&mut self.sent),
+            is_heard_outside: self.is_heard_outside,
+            outside_hears: std::mem::take(&mut self.outside_hears),
             overruns: self.overruns,
             ..Self::default()
         };
@@ -381,6 +388,9 @@ impl Uart {
             self.far.judge(&heard);
             if !heard.framing_error {
                 self.sent.push_back((cycle_of(end), heard.data));
+                if self.is_heard_outside {
+                    self.outside_hears.push(heard.data);
+                }
             }
         }
     }
