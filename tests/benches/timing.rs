@@ -1,5 +1,8 @@
 //! Stamps against UTC: the time base alone on many hours of simulated crystals and receivers, then the shipped image in the twin.
 //!
+//! *exceeded*: errors beyond the stated bound; *withheld*: frames without TS24h; *unjust*: TS1s given though the bound is beyond 1 µs, or withheld though it is within; *day ms*: error of
+//! the time of day in `AT+GNSS?`; *lock s*: from the start, or from the pulses' return, to the first whole stamp.
+//!
 //! `--hours N`: length of each scene of the first part (4); `--no-device`: the first part alone; `--group NAME`: of the second part one group alone.
 
 use tests::Bench;
@@ -74,13 +77,17 @@ fn line(bench: &mut Bench, name: &str, outcome: &Outcome) {
     let lock = outcome.lock_s.map_or("-".into(), |s| format!("{s:.1}"));
     let day = outcome.day_error_ms.map_or("-".into(), |ms| ms.to_string());
     let wrong = outcome.violations + outcome.utc_violations;
+    let ns = |value: f64, decimals: usize| match outcome.errors_ns.len() {
+        0 => "-".to_string(),
+        _ => format!("{value:.decimals$}"),
+    };
     bench.line(&format!(
-        "{name:<34}{:>8}{:>7.1}{:>8.1}{:>8.1}{:>8.0}{wrong:>10}{:>7}{:>7}{:>10}{:>8}{day:>7}{lock:>7}",
+        "{name:<34}{:>8}{:>7}{:>8}{:>8}{:>8}{wrong:>10}{:>7}{:>7}{:>10}{:>8}{day:>7}{lock:>7}",
         outcome.errors_ns.len(),
-        outcome.rms_ns(),
-        outcome.quantile_ns(0.999),
-        outcome.worst_ns(),
-        outcome.bound_ns(),
+        ns(outcome.rms_ns(), 1),
+        ns(outcome.quantile_ns(0.999), 1),
+        ns(outcome.worst_ns(), 1),
+        ns(outcome.bound_ns(), 0),
         outcome.backwards,
         outcome.wrong_second,
         outcome.withheld,

@@ -148,7 +148,7 @@ fn silence_ends_the_dialogue_and_a_sentence_begins_it_anew() {
     // Sentences that go on are no return.
     asker.sentence(b"$GNRMC", 64_999);
     assert_eq!(asker.state(), State::NoAnswer);
-    asker.sentence(b"$GNRMC", 70_000);
+    asker.sentence(b"$GNRMC", 69_999);
     assert_eq!(asker.state(), State::Asking);
 }
 
