@@ -89,7 +89,7 @@ pub struct Stats<'a> {
     pub clock: crate::clock::Status<'a>,
 }
 
-/// Bytes of the longest line: DEMOD, 24 counters of up to ten digits and their names.
+/// Bytes of the longest line: DEMOD, 25 counters of up to ten digits and their names.
 pub const MAX_LINE: usize = 640;
 
 /// One line without its end.

@@ -144,6 +144,7 @@ fn the_counters_of_every_stage_balance() {
             "unknown_address",
             "unsure",
             "implausible",
+            "unlikely",
             "no_start",
         ],
     );

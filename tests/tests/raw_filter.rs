@@ -2,8 +2,9 @@
 
 use tests::reception::device::{Device, counter};
 use twin::front_end::{FrontEnd, Player};
-use twin::source::scene::traffic::{Range, Traffic};
-use twin::source::scene::{Content, Scene, wave};
+use twin::source::scene::aircraft::address_of;
+use twin::source::scene::traffic::{Range, Traffic, df11, surveillance};
+use twin::source::scene::{Content, Emission, Role, Scene, dbm_at_snr, wave};
 
 /// Frames on the air; every second one is broken.
 const FRAMES: usize = 40;
@@ -115,4 +116,57 @@ fn refused_frames_are_in_raw_outputs_when_asked_for_and_never_decoded() {
     assert_eq!(hex_lines(&whole, &said), whole.len(), "{said}");
     assert_eq!(hex_lines(&broken, &said), 0, "{said}");
     assert_eq!(handed_on(&mut device), before);
+}
+
+/// A near and a far aircraft squitter; then replies with the near one's address come, one as strong as it and one as weak as the far one, and one of the far one.
+fn replies_near_and_far() -> (Scene, [mode_s::Frame; 3]) {
+    let [near, far] = [0, 1].map(address_of);
+    let replies = [
+        surveillance(5, near, 0x0A10),
+        surveillance(5, near, 0x0A11),
+        surveillance(5, far, 0x0A12),
+    ];
+    let [as_strong, too_weak, of_the_far] = replies;
+    let on_air = [
+        (0, 40.0, df11(near)),
+        (1, 16.0, df11(far)),
+        (0, 32.0, as_strong),
+        (0, 16.0, too_weak),
+        (1, 16.0, of_the_far),
+    ];
+    let emission = |(number, (transmitter, snr_db, frame))| Emission {
+        at_ps: (number as u64 + 1) * 300_000_000,
+        transmitter,
+        dbm: dbm_at_snr(snr_db),
+        content: Content::ModeS(frame),
+        role: Role::Wanted,
+    };
+    let scene = Traffic {
+        frames: on_air.len() + 1,
+        ..Traffic::default()
+    };
+    let emissions: Vec<Emission> = on_air.into_iter().enumerate().map(emission).collect();
+    let scene = Scene {
+        emissions: emissions.into(),
+        ..scene.scene()
+    };
+    (scene, replies)
+}
+
+#[test]
+fn a_reply_that_is_24_db_weaker_than_its_aircraft_is_refused() {
+    let (scene, [as_strong, too_weak, of_the_far]) = replies_near_and_far();
+    let mut device = Device::start();
+    let heard = play(&mut device, &scene);
+    assert_eq!(count(&[as_strong, of_the_far], &heard), 2);
+    assert_eq!(count(&[too_weak], &heard), 0);
+    let stats = device.stats();
+    assert_eq!(counter(&stats, "DEMOD", "unlikely"), Some(1), "{stats}");
+    assert_eq!(counter(&stats, "DECODE", "address"), Some(2), "{stats}");
+    // Raw outputs that ask for refused frames have it, and no decoder.
+    assert!(device.ask("AT+RAW_FILTER=0").contains("OK"));
+    let heard = play(&mut device, &scene);
+    assert_eq!(count(&[as_strong, too_weak, of_the_far], &heard), 3);
+    let stats = device.stats();
+    assert_eq!(counter(&stats, "DECODE", "address"), Some(4), "{stats}");
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   words ─ gate ─ with_bits ─ preamble ─ candidates = superseded + rejected_by_score + demodulated
-//!   demodulated = no_bits + bad_format + bad_parity + unknown_address + unsure + implausible + no_start
+//!   demodulated = no_bits + bad_format + bad_parity + unknown_address + unsure + implausible + unlikely + no_start
 //!                 + accepted_exact + accepted_interrogator + accepted_address + accepted_repaired + accepted_address_repaired
 //! ```
 //! A candidate is one phase at which a preamble may start with bits behind it, or a place where bits begin without a preamble. Each ends in exactly one of
@@ -10,10 +10,10 @@
 //!
 //! | counter | a check fits by chance once in | and then needs |
 //! |---|---|---|
-//! | `trials_exact` | 2^24 (DF11 with a code: 79 times as often) | nothing (with a code: an address heard) |
-//! | `trials_address` | 2^24 / addresses heard | certain bits, fields with assigned values |
-//! | `trials_repair` | 2^24; those that fitted are `repairs_fitting` | an address heard, or (DF17, 18) certain bits and fields with assigned values |
-//! | `trials_address_repair` | 2^24 / addresses heard | certain bits, fields with assigned values |
+//! | `trials_exact` | 2^24 (DF11 with a code: 79 times as often) | nothing (with a code: an address heard, about as strong) |
+//! | `trials_address` | 2^24 / addresses heard | certain bits, fields with assigned values, a level near that of the address |
+//! | `trials_repair` | 2^24; those that fitted are `repairs_fitting` | an address heard, about as strong, or (DF17, 18) certain bits and fields with assigned values |
+//! | `trials_address_repair` | 2^24 / addresses heard | certain bits, fields with assigned values, a level near that of the address |
 //!
 //! Mode A/C replies have counters of their own: brackets = no_reply + garbled + phantoms + replies, but for up to four that wait.
 //!
@@ -100,6 +100,8 @@ stages: {
     unsure,
     /// A known address, but a field has a value that no transponder sends.
     implausible,
+    /// A known address, but not the level that it was heard with.
+    unlikely,
     /// Bits without a preamble, and no start at which the parity fits.
     no_start,
     /// Accepted: residual zero (DF11, 17, 18, 19).
@@ -174,6 +176,7 @@ impl CountersSnapshot {
             + self.unknown_address
             + self.unsure
             + self.implausible
+            + self.unlikely
             + self.no_start
             + self.accepted();
         self.demodulated == judged

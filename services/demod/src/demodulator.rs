@@ -4,7 +4,8 @@
 //!   word n ─ gate: bits behind it? ─ preamble: at which phases? ─ for each, oldest first:
 //!        tried already, or inside an accepted frame ──────────────► superseded
 //!        too many mismatches with a preamble at every phase ──────► rejected_by_score
-//!        tried at the phase and its neighbours, see `trial` ──────► one outcome; a RawFrame ends the word
+//!        tried at the phase and its neighbours, see `trial` ──────► one outcome; a frame ends the word
+//!   frame vouched for by an address of another level, see `heard` ► unlikely, else a RawFrame
 //!   refused, but with a parity ─ asked for, and not too many? ─► handed on as a RawFrame that was not accepted
 //!   strong bits began three words ago and no preamble was tried there ─ `headless` ─► no_start, or a RawFrame
 //! ```
@@ -28,8 +29,8 @@ use crate::repair::Flips;
 use crate::ring::{RING_WORDS, Rings, SampleRing};
 use crate::trial::{Outcome, Tried, aa, received, try_phases};
 use crate::{SAMPLES_PER_WORD, TICKS_PER_SAMPLE};
-use mode_s::Frame;
 use mode_s::frame::LONG_BYTES;
+use mode_s::{Frame, crc24};
 
 /// Words that must follow a word before it is looked at: 64 + 896 samples of a long frame, its start anywhere in the word, two phases more; or a
 /// frame without preamble that starts up to seven words later.
@@ -223,12 +224,49 @@ impl Demodulator {
             }
             if accepted {
                 let (first, flips) = (self.accepted_at, Some(tried.flips));
-                sink(self.measure(rings, first, newest(), &tried.bytes, flips, counters));
+                let frame = self.measure(rings, first, newest(), &tried.bytes, flips, counters);
+                if let Some(frame) = self.judge_level(frame, &tried, counters) {
+                    sink(frame);
+                }
                 self.pass_frame(ring, is_behind, counters, replies);
             }
         }
         let known = self.next * u64::from(SAMPLES_PER_WORD);
         self.search_replies(ring, known, is_behind, counters, replies);
+    }
+
+    /// The last word on a frame whose bits were accepted: where a known address vouches for it, its level must be near that of the address. What it gives is for the sink:
+    /// a refused frame as it was received, if such are asked for.
+    #[inline(never)]
+    fn judge_level(
+        &mut self,
+        frame: RawFrame,
+        tried: &Tried,
+        counters: &Counters,
+    ) -> Option<RawFrame> {
+        let bytes = received(&tried.bytes);
+        let address = match tried.outcome {
+            Outcome::Address | Outcome::RepairedAddress => crc24::residual(bytes),
+            _ => aa(bytes),
+        };
+        let outcome = match tried.outcome {
+            Outcome::Exact => {
+                self.heard.note(proved(&tried.bytes), frame.level);
+                Outcome::Exact
+            }
+            _ if self.heard.is_likely(address, frame.level) => tried.outcome,
+            _ => Outcome::Unlikely,
+        };
+        count(outcome, counters);
+        if outcome != Outcome::Unlikely {
+            return Some(frame);
+        }
+        let word = self.accepted_at / u64::from(SAMPLES_PER_WORD);
+        (self.tells_refused && self.may_hand_on(word, counters)).then(|| RawFrame {
+            frame: frame.received(),
+            flips: None,
+            ..frame
+        })
     }
 
     /// Searches for Mode A/C replies before the frame just accepted, and steps over it. Frames back to back leave nothing to search.
@@ -370,13 +408,13 @@ impl Demodulator {
             let others = from_phase(rest, sample + 1);
             rest = from_phase(rest, sample + 2);
             add(&counters.superseded, u32::from(others != rest));
-            count(tried.outcome, counters);
             let first = (start + u64::from(sample)).saturating_add_signed(i64::from(tried.phase));
             if tried.outcome.is_accepted() {
                 add(&counters.superseded, ones(rest));
                 self.accept(first, tried);
                 return true;
             }
+            count(tried.outcome, counters);
             if self.tells_refused && tried.outcome.has_parity() {
                 self.refuse(at, first, tried, counters);
             }
@@ -387,14 +425,23 @@ impl Demodulator {
     /// Keeps a refused frame for the sink, unless there were too many.
     #[inline(never)]
     fn refuse(&mut self, word: u64, first: u64, tried: &Tried, counters: &Counters) {
-        let is_too_soon = self.refused_until > word + REFUSED_BURST * REFUSED_GAP_WORDS;
-        if self.refused.is_some() || is_too_soon {
+        if self.refused.is_some() {
             add(&counters.withheld, 1);
-            return;
+        } else if self.may_hand_on(word, counters) {
+            self.refused = Some((tried.bytes, first));
+        }
+    }
+
+    /// Whether one more refused frame may be handed on; counts it either way.
+    #[inline(never)]
+    fn may_hand_on(&mut self, word: u64, counters: &Counters) -> bool {
+        if self.refused_until > word + REFUSED_BURST * REFUSED_GAP_WORDS {
+            add(&counters.withheld, 1);
+            return false;
         }
         add(&counters.handed_on, 1);
         self.refused_until = self.refused_until.max(word) + REFUSED_GAP_WORDS;
-        self.refused = Some((tried.bytes, first));
+        true
     }
 
     /// Searches where strong bits began a few words ago, if no preamble was tried there.
@@ -436,7 +483,6 @@ impl Demodulator {
             Outcome::Interrogator
         };
         add(&counters.headless, 1);
-        count(outcome, counters);
         let first_bit = from * u64::from(SAMPLES_PER_WORD) + u64::from(found.first_bit);
         *tried = Tried {
             outcome,
@@ -453,19 +499,6 @@ impl Demodulator {
     #[inline(never)]
     fn accept(&mut self, first: u64, tried: &Tried) {
         let bytes = &tried.bytes;
-        let proved = match bytes[0] >> 3 {
-            // The layout of a DF19 with another AF is the military's own.
-            19 if bytes[0] & 7 != 0 => 0,
-            // AA of a device that is no transponder may be no ICAO address.
-            18 => match mode_s::Address::of_aa(&Frame::from_long(*bytes)) {
-                mode_s::Address::Icao(icao) => icao.0,
-                mode_s::Address::NonIcao(_) => 0,
-            },
-            _ => aa(bytes),
-        };
-        if tried.outcome == Outcome::Exact {
-            self.heard.note(proved);
-        }
         let bits = received(bytes).len() as u32 * 8;
         let samples = u64::from(PREAMBLE_SAMPLES + BIT_SAMPLES * bits);
         let tail = if first.saturating_sub(self.accepted_at) < BACK_TO_BACK_SAMPLES {
@@ -528,6 +561,20 @@ impl Default for Demodulator {
     }
 }
 
+/// The address that a frame with exact parity proves; 0 where it proves none.
+fn proved(bytes: &[u8; LONG_BYTES]) -> u32 {
+    match bytes[0] >> 3 {
+        // The layout of a DF19 with another AF is the military's own.
+        19 if bytes[0] & 7 != 0 => 0,
+        // AA of a device that is no transponder may be no ICAO address.
+        18 => match mode_s::Address::of_aa(&Frame::from_long(*bytes)) {
+            mode_s::Address::Icao(icao) => icao.0,
+            mode_s::Address::NonIcao(_) => 0,
+        },
+        _ => aa(bytes),
+    }
+}
+
 /// Counts a candidate's outcome.
 fn count(outcome: Outcome, counters: &Counters) {
     let counter = match outcome {
@@ -537,6 +584,7 @@ fn count(outcome: Outcome, counters: &Counters) {
         Outcome::UnknownAddress => &counters.unknown_address,
         Outcome::Unsure => &counters.unsure,
         Outcome::Implausible => &counters.implausible,
+        Outcome::Unlikely => &counters.unlikely,
         Outcome::RepairedAddress => &counters.accepted_address_repaired,
         Outcome::Repaired => &counters.accepted_repaired,
         Outcome::Address => &counters.accepted_address,

@@ -273,7 +273,7 @@ mod tests {
     #[test]
     fn address_parity_takes_one_flip_and_an_address_heard() {
         let mut heard = Heard::new();
-        heard.note(0x4D2023);
+        heard.note(0x4D2023, None);
         let mut short = [0x20, 0x00, 0x06, 0xA2, 0, 0, 0];
         let parity = crc24::remainder(&short[..4]) ^ 0x4D2023;
         short[4..].copy_from_slice(&parity.to_be_bytes()[1..]);

@@ -14,6 +14,8 @@
 //! Repair comes after all phases, because a repair at one phase would mask an exact copy at the next. A frame that only a known address vouches for
 //! waits for all phases, too: an exact one is worth more.
 //!
+//! What came of it is not the last word: where a known address vouches, the level is asked, too (`Demodulator::judge_level`).
+//!
 //! Every check of a parity is counted in [`Counters`]: each fits by chance once in 2^24 (an address: once for every address heard).
 
 use crate::SAMPLES_PER_WORD;
@@ -40,6 +42,9 @@ const LEAST_CERTAINTY: u32 = 22;
 /// Least mean certainty of a bit, in quarters of a sample count (4 would be every sample of both halves right), of a frame whose only proof is
 /// a known address, and of a repaired squitter of an unknown one. Noise has a mean near 1.1.
 const LEAST_CERTAINTY_QUARTERS: u32 = 7;
+
+/// The same of a frame that says what hardly anybody sends; it is never repaired.
+const LEAST_UNUSUAL_QUARTERS: u32 = 11;
 
 /// The same of a frame worth repairing. Frames of the recordings that could be repaired have seven and more, those 12 dB over the noise five and more.
 const LEAST_REPAIRED_QUARTERS: u32 = 5;
@@ -69,6 +74,8 @@ pub(crate) enum Outcome {
     UnknownAddress,
     Unsure,
     Implausible,
+    /// Accepted by its bits, refused by its level: see `Heard`.
+    Unlikely,
     RepairedAddress,
     Repaired,
     Address,
@@ -284,7 +291,12 @@ fn judge(frame: &[u8], from: Aligned, heard: &Heard, counters: &Counters) -> Out
     if !heard.knows(vouched) {
         return Outcome::UnknownAddress;
     }
-    if bits::certainty(from, frame.len()) < frame.len() as u32 * 2 * LEAST_CERTAINTY_QUARTERS {
+    let least = if plausible::unusual(frame) {
+        LEAST_UNUSUAL_QUARTERS
+    } else {
+        LEAST_CERTAINTY_QUARTERS
+    };
+    if bits::certainty(from, frame.len()) < frame.len() as u32 * 2 * least {
         return Outcome::Unsure;
     }
     if by == Outcome::Address && !plausible::fields(frame) {
@@ -318,7 +330,7 @@ fn repair(from: Aligned, phase: i32, heard: &Heard, counters: &Counters, tried: 
         add(&counters.trials_address_repair, trials);
         let Some((flips, _)) = found else { return };
         flips.apply(&mut bytes);
-        if !plausible::fields(received(&bytes)) {
+        if !plausible::fields(received(&bytes)) || plausible::unusual(received(&bytes)) {
             return;
         }
         (Outcome::RepairedAddress, flips)

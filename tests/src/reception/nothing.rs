@@ -21,12 +21,14 @@ use super::native::{FLOOR_OVER_NOISE_DB, trigger_level_mv};
 
 /// Addresses kept known.
 pub const KNOWN: usize = 400;
-/// They are heard again this often, ps: twice within the minute for which an address is believed.
-const AGAIN_PS: u64 = 25_000_000_000_000;
+/// They are heard again this often, ps: within the ten seconds for which most is believed of a level.
+const AGAIN_PS: u64 = 8_000_000_000_000;
+/// So many times one after the other, all in turn: where replies destroy one, another is heard.
+const TIMES: usize = 4;
 /// From one of them to the next, ps.
 const SPACING_PS: u64 = 100_000_000;
-/// Their ratio to the noise, dB: they shall all be heard.
-const KNOWN_SNR_DB: f32 = 40.0;
+/// Their ratios to the noise, dB, from the weakest on evenly: nearly all shall be heard, and near and far be among them, because a level vouches, too.
+const KNOWN_SNR_DB: (f32, f32) = (18.0, 40.0);
 /// Distance of the air's samples, ps: 16 MHz, twice the path's bandwidth.
 const STEP_PS: u64 = 62_500;
 const PS_A_SECOND: u64 = 1_000_000_000_000;
@@ -112,11 +114,14 @@ struct Quiet {
 
 impl Quiet {
     fn next_known(&self) -> Emission {
-        let (round, number) = (self.known / KNOWN as u64, self.known % KNOWN as u64);
+        let a_round = (KNOWN * TIMES) as u64;
+        let (round, place) = (self.known / a_round, self.known % a_round);
+        let number = place % KNOWN as u64;
+        let (weakest, strongest) = KNOWN_SNR_DB;
         Emission {
-            at_ps: round * AGAIN_PS + number * SPACING_PS,
+            at_ps: round * AGAIN_PS + place * SPACING_PS,
             transmitter: number as usize,
-            dbm: dbm_at_snr(KNOWN_SNR_DB),
+            dbm: dbm_at_snr(weakest + (strongest - weakest) * number as f32 / KNOWN as f32),
             content: Content::ModeS(df11(address_of(number as usize))),
             role: Role::Disturbing,
         }
