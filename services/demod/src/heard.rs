@@ -10,7 +10,7 @@
 //! | where either level is unknown | any |
 //!
 //! Two antennas that squitter in turn, banking and lobes make an aircraft's level jump; noise that passes for a frame has the level of noise. In the two-hour log of the golden tests, levels
-//! as its receiver gave them, 99.97 % of 109 762 replies lie within 18 dB of the last exact frame of their address and 98 % come within a second of it; of the 24 that come later than
+//! as its receiver gave them, all but 9 of 109 762 replies lie within 18 dB of the last exact frame of their address and 98 % come within a second of it; of the 24 that come later than
 //! 10 s behind it one is more than 10 dB off. An older address is likelier to be chance, so less is believed of it although it may have changed more.
 //!
 //! 1024 entries in 256 sets of four. An entry has the address's upper 16 bits in 31-16 (the set tells the lower eight), the level in 15-8 and the epoch in 7-0. An epoch is 2^18
