@@ -111,11 +111,16 @@ fn by_native(
             spi: raw.spi,
         };
         let (printer, failed) = &mut *printing.borrow_mut();
-        if tells_replies && failed.is_none() {
+        if failed.is_none() {
             *failed = printer.reply(&heard).err();
         }
     };
-    let counters = native::run_with_replies(source.as_mut(), options, &mut frame, &mut reply);
+    // As in the device: searched for only if somebody asks.
+    let counters = if tells_replies {
+        native::run_with_replies(source.as_mut(), options, &mut frame, &mut reply)
+    } else {
+        native::run(source.as_mut(), options, &mut frame)
+    };
     if let (_, Some(error)) = printing.into_inner() {
         return Err(error.into());
     }

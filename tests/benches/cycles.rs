@@ -45,18 +45,18 @@ enum Unit {
 }
 
 /// Core 1, from the ring to the queue.
-const CORE_1: [(Stage, Unit); 10] = [
+const CORE_1: [(Stage, Unit); 11] = [
     (
         stage("gate", &["demod::gate", "Demodulator::find"], Some(3600)),
         Unit::Word,
     ),
     (
-        stage(
-            "score",
-            &["demod::score", "first_with_bits", "sift"],
-            Some(1500),
-        ),
-        Unit::Call("sift"),
+        stage("score", &["demod::preamble"], Some(1500)),
+        Unit::Call("Preambles::hits"),
+    ),
+    (
+        stage("second reading", &["demod::fine"], None),
+        Unit::Call("Fine::certainties"),
     ),
     (
         stage("repair", &["demod::repair"], None),

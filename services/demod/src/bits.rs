@@ -11,12 +11,12 @@
 use crate::ring::Aligned;
 
 /// The biased margin of a tie, which reads as 0. A margin must exceed it to be a 1.
-pub(crate) const TIE: u32 = 0x7F;
+const TIE: u32 = 0x7F;
 
 /// The four margins of a word, one a byte, biased by [`TIE`]: first-half ones minus second-half ones, -4 to 4, doubled, then one more for a centre
 /// that leans to a side.
 #[inline(always)]
-pub(crate) const fn margins(samples: u32) -> u32 {
+const fn margins(samples: u32) -> u32 {
     let pairs = samples - ((samples >> 1) & 0x5555_5555);
     let nibbles = (pairs & 0x3333_3333) + ((pairs >> 2) & 0x3333_3333);
     let first = (nibbles >> 4) & 0x0F0F_0F0F;
@@ -106,6 +106,18 @@ pub(crate) fn certainty(from: Aligned, bytes: usize) -> u32 {
         certainty += sure_of(samples.take());
     }
     certainty
+}
+
+/// The margins of as many bits as there is room for, twice the difference of ones and the tie-break, -9 to 9.
+#[inline(never)]
+pub(crate) fn read_margins(from: Aligned, to: &mut [i8]) {
+    let mut samples = from;
+    for four in to.chunks_exact_mut(4) {
+        let biased = margins(samples.take());
+        for (margin, shift) in four.iter_mut().zip([24, 16, 8, 0]) {
+            *margin = ((biased >> shift & 0xFF).cast_signed() - TIE.cast_signed()) as i8;
+        }
+    }
 }
 
 #[cfg(test)]

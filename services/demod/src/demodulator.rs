@@ -3,13 +3,13 @@
 //! ```text
 //!   word n ─ gate: bits behind it? ─ preamble: at which phases? ─ for each, oldest first:
 //!        tried already, or inside an accepted frame ──────────────► superseded
-//!        too many mismatches with a preamble at every phase ──────► rejected_by_score
+//!        bits and preamble too poor together for the time there is ► rejected_by_score
 //!        tried at the phase and its neighbours, see `trial` ──────► one outcome; a frame ends the word
 //!   frame vouched for by an address of another level, see `heard` ► unlikely, else a RawFrame
 //!   refused, but with a parity ─ asked for, and not too many? ─► handed on as a RawFrame that was not accepted
 //!   strong bits began three words ago and no preamble was tried there ─ `headless` ─► no_start, or a RawFrame
 //! ```
-//! A refused candidate blocks nothing: a stronger frame that starts inside a weaker one is tried when its word comes. Behind an accepted frame the walk goes on
+//! A refused candidate blocks nothing that shows more than it did: a stronger frame that starts inside a weaker one is tried when its word comes. Behind an accepted frame the walk goes on
 //! 10 µs before its end (2 µs where frames are back to back), because a stronger preamble may cover the last bits of a frame whose parity still holds. What starts earlier inside it would have destroyed it.
 //!
 //! Mode A/C replies are looked for behind the walk, in words that no accepted frame covers (`mode_ac`), and only when the core is not behind: Mode S goes first.
@@ -17,17 +17,19 @@
 //! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 160 µs.
 
 use crate::arrival::{self, Arrival, COARSE_SIGMA, Samples};
+use crate::budget::{self, Budget};
 use crate::calibration::Calibration;
 use crate::counters::{Counters, add};
+use crate::fine::Fine;
 use crate::gate::{Gate, Pairs, REACH, STEER_WORDS, STEP_WORDS};
 use crate::headless::{self, STRONG, WAIT_WORDS};
 use crate::heard::Heard;
 use crate::level::{self, Conversions, LEVEL_START_HALF_TICKS};
 use crate::mode_ac::{Replies, Reply, WORDS_BEFORE, WORDS_BEHIND};
-use crate::preamble::{Preambles, ones};
+use crate::preamble::{Fits, Preambles, ones};
 use crate::repair::Flips;
 use crate::ring::{RING_WORDS, Rings, SampleRing};
-use crate::trial::{Outcome, Tried, aa, received, try_phases};
+use crate::trial::{Candidate, Outcome, Tried, aa, received, try_phases};
 use crate::{SAMPLES_PER_WORD, TICKS_PER_SAMPLE};
 use mode_s::frame::LONG_BYTES;
 use mode_s::{Frame, crc24};
@@ -55,11 +57,27 @@ const BACK_TO_BACK_SAMPLES: u64 = 1280;
 /// Words behind which a frame is no longer measured, 2.8 ms: the rings of second sampler and converter hold 955 and 1163 of them, and a millisecond is left before what
 /// is measured is overwritten.
 const MOST_MEASURED_AGE: u64 = 700;
-/// Words from the start of an accepted frame within which candidates are tried in haste, 1 ms: eight frames. Near the channel's limit that is always so; what is
-/// found then follows from the samples alone, as everywhere.
-const HASTY_WORDS: u64 = 256;
+/// Words from the newest back to the first looked at, at a call's start, up to which there is a second reading: the second sampler's ring holds 955, less what a reading and the call take.
+const MOST_FRESH: u64 = 930 - budget::MOST_LATE_WORDS;
 /// Words before strong bits began in which their preamble may stand, tried.
 const TRIED_WITHIN: u32 = 8;
+/// Most mismatches of a preamble tried there: a poorer one is of noise, or of what was transmitted over the frame's own.
+const MOST_OF_PREAMBLE: u32 = 4;
+
+/// Samples behind the start of a frame with clear bits and a wrong parity within which hits are phases of its own.
+const CLEAR_SAMPLES: u64 = 5;
+/// Mismatches of a preamble up to which, and opposed places of 48 from which on, the first sampler's bits are clear. What is not is weak: its bits go to the second reading at once, and
+/// where they were refused, what shows no more inside them is themselves.
+const MOST_OF_CLEAR: u32 = 6;
+const CLEAR: u32 = 40;
+/// Mismatches of a preamble that another transmission covers, and of one that is tried where time is short.
+const MOST_OF_COVERED: u32 = 14;
+const MOST_WHERE_SHORT: u32 = 12;
+/// Opposed places, and score, that a candidate inside such a frame must have more than the frame itself.
+const MORE_OPPOSED: u32 = 3;
+const MORE_SCORE: u32 = 4;
+/// Samples behind a weak frame's start from which on that is asked: before them stand other phases of its own preamble.
+const INSIDE_SAMPLES: u64 = 128;
 
 /// Words (of 4 us) a refused frame stands for: in the long run 2 000 a second are handed on. Measuring them is then 6 % of the core, and accepted ones, of which
 /// the channel carries 8 333, keep the queue.
@@ -111,14 +129,38 @@ impl RawFrame {
     }
 }
 
+/// A weak frame that was read and refused: words in which its own bits look like candidates.
+#[derive(Clone, Copy)]
+struct Unread {
+    from: u32,
+    words: u32,
+    opposed: u32,
+    score: u32,
+}
+
+impl Unread {
+    const NONE: Self = Self {
+        from: 0,
+        words: 0,
+        opposed: 0,
+        score: 0,
+    };
+
+    #[inline(always)]
+    fn covers(&self, word: u32) -> bool {
+        word.wrapping_sub(self.from) < self.words
+    }
+}
+
 /// The state between calls.
 pub struct Demodulator {
     /// The next word to gate, from the start of capture; even.
     next: u64,
     /// First sample (from the start of capture) that is not behind an accepted frame or a tried candidate.
     free_from: u64,
-    /// First sample of the frame accepted last.
+    /// First sample of the frame accepted last, and the one behind its last.
     accepted_at: u64,
+    accepted_end: u64,
     /// Whether refused frames are handed on, too.
     tells_refused: bool,
     /// Whether Mode A/C replies are searched for.
@@ -129,6 +171,10 @@ pub struct Demodulator {
     refused_until: u64,
     heard: Heard,
     gate: Gate,
+    budget: Budget,
+    /// Whether the second sampler's samples of what is looked at are still there.
+    is_fresh: bool,
+    unread: Unread,
     preambles: Preambles,
     replies: Replies,
     /// Where strong bits began, the last word that had them, and the last word at which a preamble was tried.
@@ -149,12 +195,16 @@ impl Demodulator {
             next: 0,
             free_from: 0,
             accepted_at: 0,
+            accepted_end: 0,
             tells_refused: false,
             tells_replies: false,
             refused: None,
             refused_until: 0,
             heard: Heard::new(),
             gate: Gate::new(),
+            budget: Budget::new(),
+            is_fresh: true,
+            unread: Unread::NONE,
             preambles: Preambles::new(),
             replies: Replies::new(),
             strong_since: 0,
@@ -214,11 +264,12 @@ impl Demodulator {
         self.second_samples.follow(now);
         self.conversions.follow(2 * now);
         let ring = rings.samples;
+        self.is_fresh = written.saturating_sub(self.next) <= MOST_FRESH;
         let mut tried = Tried::NOTHING;
         // Mode S goes first: what has come since the last call is more than a call brings where time is short.
         let is_behind = written.saturating_sub(self.next) > MOST_BEHIND_FOR_REPLIES;
         while let Some(pairs) = self.find(ring, written, counters) {
-            let accepted = self.examine(ring, pairs, counters, &mut tried);
+            let accepted = self.examine(rings, pairs, counters, &mut tried);
             if let Some((bytes, first)) = self.refused.take() {
                 sink(self.measure(rings, first, newest(), &bytes, None, counters));
             }
@@ -342,8 +393,9 @@ impl Demodulator {
     fn pass(&mut self, words: u32, counters: &Counters) {
         let before = self.next as u32;
         self.next += u64::from(words);
+        self.budget.earn(words);
         if before / STEER_WORDS != self.next as u32 / STEER_WORDS {
-            self.gate.steer();
+            self.gate.steer(self.budget.over_half());
         }
         add(&counters.words, words);
     }
@@ -352,18 +404,27 @@ impl Demodulator {
     #[inline(never)]
     fn examine(
         &mut self,
-        ring: &SampleRing,
+        rings: Rings,
         pairs: Pairs,
         counters: &Counters,
         tried: &mut Tried,
     ) -> bool {
         add(&counters.with_bits, STEP_WORDS);
+        let word = self.next as u32;
+        let (_, opposed) = pairs.best();
+        if self.unread.covers(word) && opposed < self.unread.opposed + MORE_OPPOSED {
+            self.pass(STEP_WORDS, counters);
+            return false;
+        }
+        self.budget.spend(budget::LOOK);
         let phases = self.gate.phases(pairs);
-        let hits = self.preambles.hits(ring, self.next as u32);
+        let leniently = self.gate.is_lenient();
+        let hits = self.preambles.hits(rings.samples, word, leniently);
         let [first, second] = hits.map(|hits| hits & phases);
-        let accepted = first != 0 && self.try_hits(ring, self.next, first, counters, tried)
-            || second != 0 && self.try_hits(ring, self.next + 1, second, counters, tried)
-            || self.try_without_preamble(ring, pairs, counters, tried);
+        let accepted = first != 0
+            && self.try_hits(rings, self.next, first, opposed, counters, tried)
+            || second != 0 && self.try_hits(rings, self.next + 1, second, opposed, counters, tried)
+            || self.try_without_preamble(rings.samples, pairs, counters, tried);
         let next = self.next + u64::from(STEP_WORDS);
         let behind = if accepted {
             ((self.free_from / u64::from(SAMPLES_PER_WORD)) & !1).max(next)
@@ -378,9 +439,10 @@ impl Demodulator {
     #[inline(never)]
     fn try_hits(
         &mut self,
-        ring: &SampleRing,
+        rings: Rings,
         at: u64,
         hits: u32,
+        opposed: u32,
         counters: &Counters,
         tried: &mut Tried,
     ) -> bool {
@@ -388,33 +450,75 @@ impl Demodulator {
         let start = at * u64::from(SAMPLES_PER_WORD);
         add(&counters.candidates, ones(hits));
         let taken = self.free_from.saturating_sub(start);
-        let accepted = self.accepted_at / u64::from(SAMPLES_PER_WORD);
-        let hasty = self.gate.is_flooded() || at.saturating_sub(accepted) < HASTY_WORDS;
         let mut rest = from_phase(hits, taken.min(u64::from(SAMPLES_PER_WORD)) as u32);
         if hits != rest {
             add(&counters.superseded, ones(hits ^ rest));
         }
+        // A clear preamble's first hit is a sample earlier where a miss more passes.
+        let early = u32::from(self.gate.is_lenient());
+        let mut least_score = self.gate.least_score();
+        if self.unread.covers(word) {
+            least_score = least_score.max(self.unread.score + MORE_SCORE);
+        }
         while rest != 0 {
-            let sample = first_phase(rest);
-            if !try_phases(ring, word, sample, hasty, &self.heard, counters, tried) {
+            let hit = first_phase(rest);
+            let sample = hit + early;
+            self.budget.spend(budget::FIT);
+            let fits = Fits::around(rings.samples, word, sample);
+            let mismatches = fits.fewest();
+            let at_sample = start + u64::from(sample);
+            // Inside an accepted frame only a stronger one can be heard.
+            let is_inside = at_sample < self.accepted_end;
+            let is_short = is_inside || self.budget.is_short();
+            if !is_worth(opposed, mismatches, least_score, is_short) {
                 add(&counters.rejected_by_score, 1);
-                rest = from_phase(rest, sample + 1);
+                rest = from_phase(rest, hit + 1);
                 continue;
             }
+            let fine = Fine {
+                ring: rings.arrival,
+                samples: &self.second_samples,
+            };
+            let first_bit = ticks(at_sample + u64::from(PREAMBLE_SAMPLES));
+            let candidate = Candidate {
+                ring: rings.samples,
+                word,
+                sample,
+                fits,
+                is_clear: mismatches <= MOST_OF_CLEAR || opposed >= CLEAR,
+                fine: (self.is_fresh && !is_inside).then_some((fine, first_bit)),
+            };
+            try_phases(candidate, &self.heard, &mut self.budget, counters, tried);
             add(&counters.demodulated, 1);
-            self.tried_last = word;
+            if mismatches <= MOST_OF_PREAMBLE {
+                self.tried_last = word;
+            }
             // The neighbours were tried with it.
-            self.free_from = start + u64::from(sample + 2);
-            let others = from_phase(rest, sample + 1);
-            rest = from_phase(rest, sample + 2);
-            add(&counters.superseded, u32::from(others != rest));
-            let first = (start + u64::from(sample)).saturating_add_signed(i64::from(tried.phase));
+            self.free_from = start + u64::from(hit + 2);
+            let first = at_sample.saturating_add_signed(i64::from(tried.phase));
+            let others = from_phase(rest, hit + 1);
             if tried.outcome.is_accepted() {
-                add(&counters.superseded, ones(rest));
+                add(&counters.superseded, ones(others));
                 self.accept(first, tried);
                 return true;
             }
             count(tried.outcome, counters);
+            if tried.is_clear {
+                self.free_from = self.free_from.max(first + CLEAR_SAMPLES);
+            }
+            let passed = self.free_from - start;
+            rest = from_phase(others, passed.min(u64::from(SAMPLES_PER_WORD)) as u32);
+            add(&counters.superseded, ones(rest ^ others));
+            if tried.has_bits && opposed < CLEAR && tried.outcome.has_parity() {
+                let inside = (first + INSIDE_SAMPLES) / u64::from(SAMPLES_PER_WORD);
+                let tail = (end(first, &tried.bytes) - TAIL_SAMPLES) / u64::from(SAMPLES_PER_WORD);
+                self.unread = Unread {
+                    from: inside as u32,
+                    words: (tail - inside) as u32,
+                    opposed,
+                    score: opposed - mismatches,
+                };
+            }
             if self.tells_refused && tried.outcome.has_parity() {
                 self.refuse(at, first, tried, counters);
             }
@@ -465,12 +569,15 @@ impl Demodulator {
         let since = self
             .tried_last
             .wrapping_sub(self.strong_since.wrapping_sub(TRIED_WITHIN));
-        if word.wrapping_sub(self.strong_since) != WAIT_WORDS || since <= TRIED_WITHIN + WAIT_WORDS
+        if word.wrapping_sub(self.strong_since) != WAIT_WORDS
+            || since <= TRIED_WITHIN + WAIT_WORDS
+            || !self.budget.affords(budget::SEARCH)
         {
             return false;
         }
         add(&counters.candidates, 1);
         add(&counters.demodulated, 1);
+        self.budget.spend(budget::SEARCH);
         // The bits shown began three words behind the word that showed them, or a little before.
         let from = self.next.saturating_sub(u64::from(WAIT_WORDS + 2));
         let Some(found) = headless::search(ring, from as u32, pair, &self.heard, counters) else {
@@ -487,6 +594,8 @@ impl Demodulator {
         *tried = Tried {
             outcome,
             phase: 0,
+            has_bits: false,
+            is_clear: false,
             flips: Flips::NONE,
             bytes: found.bytes,
         };
@@ -498,16 +607,16 @@ impl Demodulator {
     /// A frame whose preamble's first sample is `first`.
     #[inline(never)]
     fn accept(&mut self, first: u64, tried: &Tried) {
+        self.budget.spend(budget::MEASURE);
         let bytes = &tried.bytes;
-        let bits = received(bytes).len() as u32 * 8;
-        let samples = u64::from(PREAMBLE_SAMPLES + BIT_SAMPLES * bits);
         let tail = if first.saturating_sub(self.accepted_at) < BACK_TO_BACK_SAMPLES {
             TAIL_BACK_TO_BACK
         } else {
             TAIL_SAMPLES
         };
-        self.free_from = first + samples - tail;
+        self.free_from = end(first, bytes) - tail;
         self.accepted_at = first;
+        self.accepted_end = end(first, bytes);
     }
 
     /// A frame just found, whose preamble's first sample is `first`, with what the other two rings know of it, unless that is too long ago.
@@ -575,6 +684,25 @@ fn proved(bytes: &[u8; LONG_BYTES]) -> u32 {
     }
 }
 
+/// The sample behind the last one of a frame with these bits, whose preamble's first sample is `first`.
+#[inline(always)]
+fn end(first: u64, bytes: &[u8; LONG_BYTES]) -> u64 {
+    let bits = received(bytes).len() as u32 * 8;
+    first + u64::from(PREAMBLE_SAMPLES + BIT_SAMPLES * bits)
+}
+
+/// Whether bits with so many opposed places behind a preamble with so many mismatches are worth a trial.
+#[inline(always)]
+fn is_worth(opposed: u32, mismatches: u32, least_score: u32, is_short: bool) -> bool {
+    // Clear bits have a clear preamble, unless something else was transmitted over it.
+    let most = match (is_short, opposed >= CLEAR) {
+        (true, _) => MOST_WHERE_SHORT,
+        (false, true) => MOST_OF_COVERED,
+        (false, false) => u32::MAX,
+    };
+    opposed >= least_score + mismatches && mismatches <= most
+}
+
 /// Counts a candidate's outcome.
 fn count(outcome: Outcome, counters: &Counters) {
     let counter = match outcome {
@@ -611,13 +739,11 @@ fn from_phase(hits: u32, sample: u32) -> u32 {
 pub(crate) fn first_phase(hits: u32) -> u32 {
     let mut rest = hits;
     let mut phase = 0;
-    while rest >> 24 == 0 {
-        rest <<= 8;
-        phase += 8;
-    }
-    while rest & 0x8000_0000 == 0 {
-        rest <<= 1;
-        phase += 1;
+    for half in [16, 8, 4, 2, 1] {
+        if rest >> (32 - half) == 0 {
+            rest <<= half;
+            phase += half;
+        }
     }
     phase
 }

@@ -14,7 +14,7 @@
 //! It comes before the preamble is looked at, because it costs a third of that and noise passes it less often: white noise has 24 of 48 (standard deviation 3.5 to 4.9),
 //! frames whose bits can be decoded have 34 and more. It keeps a frame whose preamble lies under another transmission, too.
 //!
-//! What passes is looked at more closely, which takes time. So the threshold is steered by the share of words that pass: it rises where noise crosses the comparator all
+//! What passes is looked at more closely, which takes time. So the threshold is steered by the time that is left (`budget`): it rises where noise crosses the comparator all
 //! the time, and falls where the air is quiet, down to where a slicer has eaten half of every pulse. The steps stand at fixed words of the stream, so the same samples always
 //! give the same threshold.
 //!
@@ -33,22 +33,15 @@ pub(crate) const REACH: u32 = FIRST + STEPS * STEP_WORDS + 1;
 
 /// Words between two moves of the threshold.
 pub(crate) const STEER_WORDS: u32 = 64;
-/// Steps, of the 32 between two moves, that may pass before the threshold rises: one that passes costs as much as five that do not.
-const PASSING: u32 = 4;
-/// The threshold's moves a step too many or too few, in 1/256 of a place: up within a millisecond, down in tens of them.
-const UP: u32 = 24;
-const DOWN: u32 = 8;
-/// Steps passing from which on the noise has just come: the threshold jumps by eight places, and its limit with it.
-const FLOODED: u32 = 16;
-const JUMP: u32 = 8 << 8;
-/// The threshold's limits, in places of 48, and where it starts. Noise and frames alone never lift it over the second, from which on weak frames would be lost.
+/// Bits by which the credit over a half is shifted to be the threshold's move in 1/256 of a place: up to 0.8 of a place every 0.26 ms.
+const MOVE_SHIFT: u32 = 8;
+/// The threshold's limits, in places of 48, and where it starts.
 const LOWEST: u32 = 22;
-const HIGH: u32 = 33;
-/// The third is for air in which bits seem to stand everywhere: the limit rises towards it while more than so many steps pass, and falls while fewer do, in 1/256 of a place a
-/// step too many or too few.
 const HIGHEST: u32 = 38;
-const SUSTAINED: u32 = 6;
-const LIMIT_MOVES: u32 = 8;
+/// Places under the threshold that a candidate's score may be: its opposed places less its preamble's mismatches.
+const UNDER: u32 = 9;
+/// Thresholds below which there is time for preambles with a miss more.
+const LENIENT: u32 = 27;
 
 /// Opposed places of two words: three bits a pair of samples, in two registers of eight nibbles.
 #[derive(Clone, Copy)]
@@ -131,10 +124,6 @@ pub(crate) struct Gate {
     at: u32,
     /// The threshold, in 1/256 of a place.
     threshold: u32,
-    /// The highest that it may be now, in 1/256 of a place.
-    limit: u32,
-    /// Steps that passed since the threshold moved.
-    passed: u32,
 }
 
 impl Gate {
@@ -146,8 +135,6 @@ impl Gate {
             // Not word 0, which is asked for first.
             at: u32::MAX,
             threshold: LOWEST << 8,
-            limit: HIGH << 8,
-            passed: 0,
         }
     }
 
@@ -163,28 +150,24 @@ impl Gate {
         pairs.phases(self.least())
     }
 
-    /// Whether bits have seemed to stand everywhere for a while: the limit is a place up.
-    pub(crate) fn is_flooded(&self) -> bool {
-        self.limit >= (HIGH + 1) << 8
+    /// The least score of a candidate: opposed places less mismatches of its preamble.
+    #[inline(always)]
+    pub(crate) fn least_score(&self) -> u32 {
+        self.least() - UNDER
     }
 
-    /// Moves the threshold; to be called once every [`STEER_WORDS`] words of the stream.
-    pub(crate) fn steer(&mut self) {
-        let moved = if self.passed >= FLOODED {
-            self.threshold + JUMP
-        } else if self.passed > PASSING {
-            self.threshold + UP * (self.passed - PASSING)
-        } else {
-            self.threshold - DOWN * (PASSING - self.passed)
-        };
-        let limit = if self.passed >= FLOODED {
-            self.limit + JUMP
-        } else {
-            self.limit + LIMIT_MOVES * self.passed - LIMIT_MOVES * SUSTAINED
-        };
-        self.limit = limit.clamp(HIGH << 8, HIGHEST << 8);
-        self.threshold = moved.clamp(LOWEST << 8, self.limit);
-        self.passed = 0;
+    /// Whether there is time for poorer preambles.
+    #[inline(always)]
+    pub(crate) fn is_lenient(&self) -> bool {
+        self.least() < LENIENT
+    }
+
+    /// Moves the threshold by the credit over a half; to be called once every [`STEER_WORDS`] words of the stream.
+    pub(crate) fn steer(&mut self, over_half: i32) {
+        let moved = self
+            .threshold
+            .saturating_add_signed(-(over_half >> MOVE_SHIFT));
+        self.threshold = moved.clamp(LOWEST << 8, HIGHEST << 8);
     }
 
     /// Goes to a word: reads all but the newest step of those asked.
@@ -217,7 +200,6 @@ impl Gate {
             let Opposed { even, odd } = older.plus(old).plus(new);
             let pairs = [total(even >> 4), total(odd >> 4), total(even), total(odd)];
             if pairs.iter().any(|&opposed| opposed >= least) {
-                self.passed += 1;
                 found = Some((at, Pairs(pairs)));
             }
             (older, old, held) = (old, new, behind);

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! ```text
-//!  ring ─ gate (bits behind this word?) ─ preamble (at which of 32 phases?) ─ trial (four phases exactly, then repair) ─ RawFrame
+//!  ring ─ gate (bits behind this word?) ─ preamble (at which of 32 phases?) ─ trial (four phases, the second sampler, repair) ─ RawFrame
 //!                                       └ none, but strong bits ─ headless
 //! ```
 //!
@@ -25,9 +25,11 @@
 
 mod arrival;
 mod bits;
+mod budget;
 mod calibration;
 mod counters;
 mod demodulator;
+mod fine;
 mod gate;
 mod grid;
 mod headless;

@@ -13,22 +13,16 @@
 //!
 //! Any five wrong bits or fewer of 112 are seen by this code (distance 6), so two patterns of at most two bits never share a residual.
 
-use crate::bits;
 use crate::heard::Heard;
-use crate::ring::Aligned;
 use mode_s::crc24::GENERATOR;
 use mode_s::frame::LONG_BYTES;
 
 /// Least certain bits that may be flipped.
 const CANDIDATES: usize = 10;
 /// Bits of DF.
-const DF_BITS: u8 = 5;
-/// The certainty of a bit all of whose samples are as they should be: such a bit is never flipped.
-const NONE_YET: u8 = 9;
+const DF_BITS: u32 = 5;
 /// What a place without a bit adds to a residual: no residual and no address has these bits.
 const NO_SYNDROME: u32 = u32::MAX;
-/// One in each byte.
-const EACH_BYTE: u32 = 0x0101_0101;
 /// Bits of a long frame.
 const LONG_BITS: usize = LONG_BYTES * 8;
 
@@ -95,38 +89,43 @@ pub(crate) struct Weakest {
 }
 
 impl Weakest {
-    /// Of the frame whose first bit `samples` stands at.
+    /// Of the frame with these margins, a bit each; those of the size `beyond_doubt` and more are never flipped.
     #[inline(never)]
-    pub(crate) fn of(samples: Aligned, bytes: usize) -> Self {
-        let mut samples = samples;
-        let mut weakest = [(NONE_YET, 0u8); CANDIDATES];
-        let mut bit = 0u8;
-        for _ in 0..bytes * 2 {
-            let margins = bits::margins(samples.take());
-            // Which of the four are less certain than the last of the ten? A margin is at most 10 off a tie, so no byte carries into the next.
-            let worst = u32::from(weakest[CANDIDATES - 1].0) * EACH_BYTE;
-            let within = (margins + worst) & !(margins + EACH_BYTE - worst) & (0x80 * EACH_BYTE);
-            if within != 0 {
-                for shift in [24, 16, 8, 0] {
-                    let certainty = (margins >> shift & 0xFF).abs_diff(bits::TIE) as u8;
-                    let number = bit + (24 - shift) / 8;
-                    if certainty < weakest[CANDIDATES - 1].0 && number >= DF_BITS {
-                        insert(&mut weakest, certainty, number);
-                    }
+    pub(crate) fn of(margins: &[i8], beyond_doubt: u8) -> Self {
+        // The least certain so far, the least first: sizes in the upper byte, bits in the lower.
+        let mut least = [u32::from(beyond_doubt) << 8; CANDIDATES];
+        let mut worst = least[CANDIDATES - 1];
+        let mut bit = 0;
+        for &margin in margins {
+            let key = u32::from(margin.unsigned_abs()) << 8 | bit;
+            bit += 1;
+            // Of equals the first come first, and bits beyond doubt never.
+            if key < worst && bit > DF_BITS {
+                let mut place = CANDIDATES - 1;
+                while place > 0 && key < least[place - 1] {
+                    least[place] = least[place - 1];
+                    place -= 1;
                 }
+                least[place] = key;
+                worst = least[CANDIDATES - 1];
             }
-            bit += 4;
         }
-        let first = LONG_BITS - bytes * 8;
-        Self {
-            bits: weakest.map(|(_, bit)| bit),
-            syndromes: weakest.map(|(certainty, bit)| {
-                let syndrome = SYNDROMES.get(first + usize::from(bit)).copied();
-                syndrome
-                    .filter(|_| certainty < NONE_YET)
-                    .unwrap_or(NO_SYNDROME)
-            }),
+        // Loops: the library's own maps over arrays would lie in flash.
+        let mut weakest = Self {
+            bits: [0; CANDIDATES],
+            syndromes: [NO_SYNDROME; CANDIDATES],
+        };
+        let first = LONG_BITS - margins.len();
+        let places = weakest.bits.iter_mut().zip(&mut weakest.syndromes);
+        for ((bit, syndrome), key) in places.zip(least) {
+            *bit = key as u8;
+            if key >> 8 < u32::from(beyond_doubt)
+                && let Some(&of_bit) = SYNDROMES.get(first + usize::from(*bit))
+            {
+                *syndrome = of_bit;
+            }
         }
+        weakest
     }
 
     /// At most two flips that leave the residual 0, and the trials it took.
@@ -178,22 +177,12 @@ impl Weakest {
     }
 }
 
-/// Puts a bit in its place among the weakest and drops the last.
-#[inline(always)]
-fn insert(weakest: &mut [(u8, u8); CANDIDATES], certainty: u8, bit: u8) {
-    let mut place = CANDIDATES - 1;
-    while place > 0 && certainty < weakest[place - 1].0 {
-        weakest[place] = weakest[place - 1];
-        place -= 1;
-    }
-    weakest[place] = (certainty, bit);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ring::SampleRing;
+    extern crate std;
     use mode_s::crc24;
+    use std::vec::Vec;
 
     #[test]
     fn a_syndrome_is_the_residual_of_its_bit_alone() {
@@ -207,24 +196,22 @@ mod tests {
         }
     }
 
-    /// A ring with these bits, in which each bit of `weak` has lost so many of its eight samples.
-    fn ring(bytes: &[u8], weak: &[(usize, u32)]) -> SampleRing {
-        let ring = SampleRing::new();
-        for (index, byte) in (0..).zip(bytes.iter().flat_map(|b| [b >> 4, b & 15])) {
-            let word = (0..4).fold(0, |word, bit| {
-                let number = index as usize * 4 + bit;
-                let lost = weak.iter().find(|(at, _)| *at == number).map_or(0, |w| w.1);
-                let half = 0xF << lost & 0xF;
-                let pulse = if byte >> (3 - bit) & 1 != 0 {
-                    half << 4
+    /// A bit all of whose samples are as they should be.
+    const BEYOND_DOUBT: u8 = 9;
+
+    /// Margins of these bits, of which those of `weak` have lost so much.
+    fn margins(bytes: &[u8], weak: &[(usize, i8)]) -> Vec<i8> {
+        (0..bytes.len() * 8)
+            .map(|bit| {
+                let lost = weak.iter().find(|(at, _)| *at == bit).map_or(0, |w| w.1);
+                let size = 9 - lost;
+                if bytes[bit / 8] >> (7 - bit % 8) & 1 != 0 {
+                    size
                 } else {
-                    half
-                };
-                word << 8 | pulse
-            });
-            ring.store(index, word);
-        }
-        ring
+                    -size
+                }
+            })
+            .collect()
     }
 
     const DF17: [u8; LONG_BYTES] = [
@@ -234,9 +221,8 @@ mod tests {
     #[test]
     fn the_least_certain_bits_come_first_and_never_those_of_df() {
         // Bits 90 and 17 are zeros (pulse in the later half): the more samples are lost, the less certain.
-        let weak = [(90, 3), (17, 4), (0, 4)];
-        let ring = ring(&DF17, &weak);
-        let weakest = Weakest::of(Aligned::new(&ring, 0, 0), LONG_BYTES);
+        let weak = [(90, 7), (17, 9), (0, 9)];
+        let weakest = Weakest::of(&margins(&DF17, &weak), BEYOND_DOUBT);
         assert_eq!(weakest.bits[..2], [17, 90]);
         // The other bits are beyond doubt, and bit 0 is one of DF.
         assert!(
@@ -248,9 +234,8 @@ mod tests {
 
     #[test]
     fn one_or_two_wrong_bits_among_the_weakest_are_found_and_three_are_not() {
-        let weak = [(90, 4), (17, 4), (33, 4)];
-        let ring = ring(&DF17, &weak);
-        let weakest = Weakest::of(Aligned::new(&ring, 0, 0), LONG_BYTES);
+        let weak = [(90, 9), (17, 9), (33, 9)];
+        let weakest = Weakest::of(&margins(&DF17, &weak), BEYOND_DOUBT);
         for wrong in [&[17][..], &[90, 17], &[33, 90]] {
             let mut bytes = DF17;
             wrong
@@ -277,8 +262,7 @@ mod tests {
         let mut short = [0x20, 0x00, 0x06, 0xA2, 0, 0, 0];
         let parity = crc24::remainder(&short[..4]) ^ 0x4D2023;
         short[4..].copy_from_slice(&parity.to_be_bytes()[1..]);
-        let ring = ring(&short, &[(20, 4)]);
-        let weakest = Weakest::of(Aligned::new(&ring, 0, 0), 7);
+        let weakest = Weakest::of(&margins(&short, &[(20, 9)]), BEYOND_DOUBT);
         short[2] ^= 0x08;
         let residual = crc24::residual(&short);
         let (found, _) = weakest.explain_by_address(residual, &heard);

@@ -67,6 +67,22 @@ impl ArrivalRing {
         self.words[index as usize & (ARRIVAL_WORDS - 1)].store(word, Ordering::Relaxed);
     }
 
+    /// The 128 samples from a sample on.
+    #[inline(always)]
+    pub(crate) fn from(&self, sample: u32) -> [u32; 4] {
+        let shift = sample & 31;
+        let mut index = (sample >> 5) as usize;
+        let mut word = || {
+            let word = self.words[index & (ARRIVAL_WORDS - 1)].load(Ordering::Relaxed);
+            index += 1;
+            word
+        };
+        let [a, b, c, d, e] = [word(), word(), word(), word(), word()];
+        // Two shifts, because a shift by 32 is not one.
+        let aligned = |word: u32, behind: u32| word << shift | behind >> 1 >> (31 - shift);
+        [aligned(a, b), aligned(b, c), aligned(c, d), aligned(d, e)]
+    }
+
     /// Eight samples from a place on, if one word has them all: samples in the upper half, a fraction that is not asked in the lower.
     #[inline(always)]
     pub(crate) fn eight(&self, place: u32) -> Option<u8> {

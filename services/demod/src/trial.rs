@@ -1,10 +1,11 @@
-//! The trial of a candidate: every phase as it is, then, if none is proved, each with repair, the one most certain in its first 16 bits first.
+//! The trial of a candidate: every phase as it is, if the preamble is good; then, while there is time, a second reading from the second sampler (`fine`), and repair of each phase, the one
+//! most certain in its first 16 bits first.
 //!
 //! ```text
 //!   phase ─ no such DF ───────────────────────────► BadFormat
 //!         ─ the first 16 bits are too unsure ─────► NoBits
 //!         ─ DF11 17 18 19 ─ residual 0 ───────────► Exact                 ends the search
-//!                         ─ DF11, a code, heard ──► Interrogator
+//!                         ─ DF11, a code, heard ──► Interrogator            (second reading: any that is accepted)
 //!                         ─ else ─────────────────► BadParity  ───┐
 //!         ─ address parity ─ heard, sure ─────────► Address       │ these phases, until one is repaired:
 //!                          ─ heard, unsure ───────► Unsure        │   fits by flips, address heard ─────► Repaired
@@ -12,7 +13,8 @@
 //!                          ─ else ────────────────► UnknownAddress┘   else ──────────────────────────────► as it was
 //! ```
 //! Repair comes after all phases, because a repair at one phase would mask an exact copy at the next. A frame that only a known address vouches for
-//! waits for all phases, too: an exact one is worth more.
+//! waits for all phases, too: an exact one is worth more. A preamble that fits badly is of a weak frame, whose bits the first sampler has wrong: it goes to the second
+//! reading at once.
 //!
 //! What came of it is not the last word: where a known address vouches, the level is asked, too (`Demodulator::judge_level`).
 //!
@@ -20,7 +22,9 @@
 
 use crate::SAMPLES_PER_WORD;
 use crate::bits;
+use crate::budget::{self, Budget};
 use crate::counters::{Counters, add};
+use crate::fine::Fine;
 use crate::heard::Heard;
 use crate::plausible;
 use crate::preamble::Fits;
@@ -30,12 +34,8 @@ use mode_s::crc24;
 use mode_s::frame::{LONG_BYTES, SHORT_BYTES};
 use mode_s::parity::HIGHEST_INTERROGATOR_CODE;
 
-/// Most mismatches of a preamble that is worth demodulating. White noise that crosses the threshold all the time and passes gate and taps has more two times in three; two of three
-/// frames that the noise half covers have 13 or 14 (`bench sensitivity --genie`).
-const MOST_MISMATCHES: u32 = 14;
-/// The same right behind an accepted frame, where time is short.
-const MOST_MISMATCHES_IN_HASTE: u32 = 12;
-
+/// Most mismatches of a preamble at which a phase is demodulated from the first sampler. Frames that the noise half covers have more: two of three 13 or 14 (`bench sensitivity --genie`).
+const MOST_MISMATCHES: u32 = 12;
 /// Least certainty of the first 16 bits, of 64, below which there is nothing to demodulate. Noise has a mean of 18.
 const LEAST_CERTAINTY: u32 = 22;
 
@@ -48,6 +48,9 @@ const LEAST_UNUSUAL_QUARTERS: u32 = 11;
 
 /// The same of a frame worth repairing. Frames of the recordings that could be repaired have seven and more, those 12 dB over the noise five and more.
 const LEAST_REPAIRED_QUARTERS: u32 = 5;
+
+/// Size of the margin of a bit all of whose samples are as they should be: such a bit is never flipped.
+const BEYOND_DOUBT: u8 = 9;
 
 /// Samples of the preamble.
 const PREAMBLE: i32 = 64;
@@ -88,6 +91,8 @@ impl Tried {
     pub(crate) const NOTHING: Self = Self {
         outcome: Outcome::NoBits,
         phase: 0,
+        has_bits: false,
+        is_clear: false,
         flips: Flips::NONE,
         bytes: [0; LONG_BYTES],
     };
@@ -104,8 +109,27 @@ impl Outcome {
         self >= Outcome::BadParity
     }
 
+    /// Whether an address heard alone vouches for it.
+    #[inline(always)]
+    pub(crate) fn is_by_address(self) -> bool {
+        matches!(
+            self,
+            Outcome::Interrogator | Outcome::Address | Outcome::Implausible
+        )
+    }
+
+    /// The same, if that is the case, of bits that are sure or not.
+    #[inline(always)]
+    pub(crate) fn if_sure(self, is_sure: bool) -> Self {
+        if self.is_by_address() && !is_sure {
+            Outcome::Unsure
+        } else {
+            self
+        }
+    }
+
     /// Whether other bits than those demodulated could still be a frame.
-    fn may_be_repaired(self) -> bool {
+    pub(crate) fn may_be_repaired(self) -> bool {
         matches!(
             self,
             Outcome::BadParity | Outcome::UnknownAddress | Outcome::Unsure | Outcome::Implausible
@@ -119,6 +143,10 @@ pub(crate) struct Tried {
     pub(crate) outcome: Outcome,
     /// Samples from the candidate's first hit to where the preamble fits best near the phase that gave the bits.
     pub(crate) phase: i32,
+    /// Whether the second reading found bits surer than noise.
+    pub(crate) has_bits: bool,
+    /// Whether it found bits so sure that other phases would only be worse.
+    pub(crate) is_clear: bool,
     /// What was repaired.
     pub(crate) flips: Flips,
     /// The bits, repaired.
@@ -145,62 +173,114 @@ pub(crate) fn received(bytes: &[u8; LONG_BYTES]) -> &[u8] {
     }
 }
 
-/// The best that a candidate and its neighbours give, in `tried`; in haste only the most certain phase is repaired. False when no phase looks like a preamble.
+/// Where a frame may start.
+#[derive(Clone, Copy)]
+pub(crate) struct Candidate<'a> {
+    pub(crate) ring: &'a SampleRing,
+    /// The word and the sample in it at which the preamble may start.
+    pub(crate) word: u32,
+    pub(crate) sample: u32,
+    /// How well a preamble fits there and around it.
+    pub(crate) fits: Fits,
+    /// Whether the first sampler's bits are likely to be right.
+    pub(crate) is_clear: bool,
+    /// The second sampler, and the tick at which the first bit would begin. `None` when its samples may be overwritten already.
+    pub(crate) fine: Option<(Fine<'a>, u64)>,
+}
+
+/// The best that a candidate and its neighbours give, in `tried`.
 #[inline(never)]
 pub(crate) fn try_phases(
-    ring: &SampleRing,
-    word: u32,
-    sample: u32,
-    hasty: bool,
+    at: Candidate,
     heard: &Heard,
+    budget: &mut Budget,
     counters: &Counters,
     tried: &mut Tried,
-) -> bool {
-    let most_mismatches = if hasty {
-        MOST_MISMATCHES_IN_HASTE
-    } else {
-        MOST_MISMATCHES
-    };
-    let fits = Fits::of(from_sample(ring, word, sample.wrapping_sub(1)));
+) {
+    let Candidate {
+        ring,
+        word,
+        sample,
+        fits,
+        ..
+    } = at;
+    let is_short = budget.is_short();
     let likeliest = likeliest(&fits);
-    tried.flips = Flips::NONE;
-    let mut any = false;
+    (tried.outcome, tried.phase, tried.flips) = (Outcome::NoBits, 0, Flips::NONE);
+    (tried.has_bits, tried.is_clear) = (false, false);
     // How certain the phases are that may be repaired, in the order in which they are tried.
     let mut repairable = [0; TRIED];
-    for (place, to_repair) in repairable.iter_mut().enumerate() {
-        let phase = in_order(likeliest, place);
-        if fits.at(phase) > most_mismatches {
-            continue;
-        }
-        let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase + PREAMBLE));
-        let mut bytes = [0; LONG_BYTES];
-        let (outcome, certainty) = demodulate(&mut samples, heard, counters, &mut bytes);
-        if !any || outcome > tried.outcome {
-            (tried.outcome, tried.phase, tried.bytes) = (outcome, phase, bytes);
-            any = true;
-            if outcome == Outcome::Exact {
-                break;
+    if is_short || at.is_clear {
+        for (place, to_repair) in repairable.iter_mut().enumerate() {
+            let phase = in_order(likeliest, place);
+            if fits.at(phase) > MOST_MISMATCHES {
+                continue;
+            }
+            budget.spend(budget::DEMODULATE);
+            let mut samples = from_sample(ring, word, sample.wrapping_add_signed(phase + PREAMBLE));
+            let mut bytes = [0; LONG_BYTES];
+            let (outcome, certainty) = demodulate(&mut samples, heard, counters, &mut bytes);
+            if outcome > tried.outcome {
+                (tried.outcome, tried.phase, tried.bytes) = (outcome, phase, bytes);
+                if outcome == Outcome::Exact {
+                    break;
+                }
+            }
+            if outcome.may_be_repaired() {
+                *to_repair = certainty;
             }
         }
-        if outcome.may_be_repaired() {
-            *to_repair = certainty;
-        }
     }
-    if !any {
-        return false;
+    let mut is_last = is_short;
+    if !tried.outcome.is_accepted()
+        && !is_short
+        && let Some((fine, first_bit)) = at.fine
+    {
+        let phase = phase_at(likeliest);
+        read_again(fine, first_bit, phase, heard, budget, counters, tried);
+        if tried.outcome.is_accepted() {
+            return;
+        }
+        is_last = true;
     }
     while !tried.outcome.is_accepted()
+        && budget.affords(budget::REPAIR)
         && let Some(place) = most_certain(&mut repairable)
     {
         let phase = in_order(likeliest, place);
         let samples = from_sample(ring, word, sample.wrapping_add_signed(phase + PREAMBLE));
+        budget.spend(budget::REPAIR);
         repair(samples, phase, heard, counters, tried);
-        if hasty {
+        if is_last {
             break;
         }
     }
     tried.phase = fits.leading(tried.phase);
-    true
+}
+
+/// What the second sampler gives, if that is more than what was tried.
+#[inline(never)]
+fn read_again(
+    fine: Fine,
+    first_bit: u64,
+    phase: i32,
+    heard: &Heard,
+    budget: &mut Budget,
+    counters: &Counters,
+    tried: &mut Tried,
+) {
+    let ticks = i64::from(phase * crate::TICKS_PER_SAMPLE as i32);
+    let first_bit = first_bit.wrapping_add_signed(ticks);
+    let Some(read) = fine.read(first_bit, budget, heard, counters) else {
+        return;
+    };
+    (tried.has_bits, tried.is_clear) = (read.has_bits, read.is_clear);
+    if read.outcome > tried.outcome {
+        // Seven ticks a sample there, fifteen here: two and more are the next sample.
+        let later = i32::from(read.later >= 2) - i32::from(read.later <= -2);
+        tried.phase = phase + later;
+        (tried.outcome, tried.flips, tried.bytes) = (read.outcome, read.flips, read.bytes);
+    }
 }
 
 /// Which of [`PHASES`] has the preamble that fits best, the first of equals.
@@ -252,9 +332,7 @@ fn demodulate(
 ) -> (Outcome, u32) {
     let from = *samples;
     let (first, first_sure) = bits::byte_and_certainty(samples);
-    // DF 0, 4, 5, 11, 16 to 21 and 24 to 31 exist.
-    const FORMATS: u32 = 0xFF3F_0831;
-    if FORMATS >> (first >> 3) & 1 == 0 {
+    if !exists(first) {
         return (Outcome::BadFormat, 0);
     }
     let (second, second_sure) = bits::byte_and_certainty(samples);
@@ -266,12 +344,30 @@ fn demodulate(
     bytes[1] = second;
     let length = received(bytes).len();
     bits::read(samples, bytes, 2, length);
-    (judge(received(bytes), from, heard, counters), certainty)
+    let frame = received(bytes);
+    let mut outcome = judge(frame, heard, counters);
+    if outcome.is_by_address() {
+        let least = if plausible::unusual(frame) {
+            LEAST_UNUSUAL_QUARTERS
+        } else {
+            LEAST_CERTAINTY_QUARTERS
+        };
+        let sure = bits::certainty(from, frame.len());
+        outcome = outcome.if_sure(sure >= frame.len() as u32 * 2 * least);
+    }
+    (outcome, certainty)
+}
+
+/// Whether the downlink format of a frame's first byte exists: 0, 4, 5, 11, 16 to 21, 24 to 31.
+#[inline(always)]
+pub(crate) fn exists(first: u8) -> bool {
+    const FORMATS: u32 = 0xFF3F_0831;
+    FORMATS >> (first >> 3) & 1 != 0
 }
 
 /// What the parity says of bits; how sure they are is asked only where an address alone vouches for them.
 #[inline(never)]
-fn judge(frame: &[u8], from: Aligned, heard: &Heard, counters: &Counters) -> Outcome {
+pub(crate) fn judge(frame: &[u8], heard: &Heard, counters: &Counters) -> Outcome {
     let df = frame.first().map_or(0, |first| first >> 3);
     let residual = crc24::residual(frame);
     let (vouched, by) = match df {
@@ -290,14 +386,6 @@ fn judge(frame: &[u8], from: Aligned, heard: &Heard, counters: &Counters) -> Out
     };
     if !heard.knows(vouched) {
         return Outcome::UnknownAddress;
-    }
-    let least = if plausible::unusual(frame) {
-        LEAST_UNUSUAL_QUARTERS
-    } else {
-        LEAST_CERTAINTY_QUARTERS
-    };
-    if bits::certainty(from, frame.len()) < frame.len() as u32 * 2 * least {
-        return Outcome::Unsure;
     }
     if by == Outcome::Address && !plausible::fields(frame) {
         return Outcome::Implausible;
@@ -324,34 +412,63 @@ fn repair(from: Aligned, phase: i32, heard: &Heard, counters: &Counters, tried: 
     if bytes[0] >> 3 == 19 || certainty < length as u32 * 2 * least {
         return;
     }
-    let weakest = Weakest::of(from, length);
-    let (outcome, flips) = if by_address {
-        let (found, trials) = weakest.explain_by_address(residual, heard);
-        add(&counters.trials_address_repair, trials);
-        let Some((flips, _)) = found else { return };
-        flips.apply(&mut bytes);
-        if !plausible::fields(received(&bytes)) || plausible::unusual(received(&bytes)) {
-            return;
-        }
-        (Outcome::RepairedAddress, flips)
-    } else {
-        let (flips, trials) = weakest.explain(residual);
-        add(&counters.trials_repair, trials);
-        let Some(flips) = flips else { return };
-        flips.apply(&mut bytes);
-        add(&counters.repairs_fitting, 1);
-        let sure = certainty >= length as u32 * 2 * LEAST_CERTAINTY_QUARTERS;
-        if !(heard.knows(aa(received(&bytes))) || sure && plausible::squitter(received(&bytes))) {
-            return;
-        }
-        (Outcome::Repaired, flips)
+    let mut margins = [0; LONG_BYTES * 8];
+    let margins = margins.get_mut(..length * 8).unwrap_or_default();
+    bits::read_margins(from, margins);
+    let weakest = Weakest::of(margins, BEYOND_DOUBT);
+    let is_sure = certainty >= length as u32 * 2 * LEAST_CERTAINTY_QUARTERS;
+    let sure = Sure {
+        by_address: is_sure,
+        unheard: is_sure,
     };
-    *tried = Tried {
-        outcome,
-        phase,
-        flips,
-        bytes,
-    };
+    if let Some((outcome, flips)) = explain(&mut bytes, residual, &weakest, sure, heard, counters) {
+        (tried.outcome, tried.phase) = (outcome, phase);
+        (tried.flips, tried.bytes) = (flips, bytes);
+    }
+}
+
+/// Whether bits are sure enough for what nothing else vouches for.
+#[derive(Clone, Copy)]
+pub(crate) struct Sure {
+    /// An address heard alone.
+    pub(crate) by_address: bool,
+    /// A repaired squitter of an address not heard.
+    pub(crate) unheard: bool,
+}
+
+/// Which flips explain the residual, and whether they may be believed. The bytes are flipped.
+#[inline(never)]
+pub(crate) fn explain(
+    bytes: &mut [u8; LONG_BYTES],
+    residual: u32,
+    weakest: &Weakest,
+    sure: Sure,
+    heard: &Heard,
+    counters: &Counters,
+) -> Option<(Outcome, Flips)> {
+    match bytes[0] >> 3 {
+        19 => None,
+        11 | 17 | 18 => {
+            let (flips, trials) = weakest.explain(residual);
+            add(&counters.trials_repair, trials);
+            let flips = flips?;
+            flips.apply(bytes);
+            add(&counters.repairs_fitting, 1);
+            let frame = received(bytes);
+            let believed = heard.knows(aa(frame)) || sure.unheard && plausible::squitter(frame);
+            believed.then_some((Outcome::Repaired, flips))
+        }
+        _ if !sure.by_address => None,
+        _ => {
+            let (found, trials) = weakest.explain_by_address(residual, heard);
+            add(&counters.trials_address_repair, trials);
+            let (flips, _) = found?;
+            flips.apply(bytes);
+            let frame = received(bytes);
+            let believed = plausible::fields(frame) && !plausible::unusual(frame);
+            believed.then_some((Outcome::RepairedAddress, flips))
+        }
+    }
 }
 
 /// The address in AA.

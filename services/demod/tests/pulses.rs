@@ -189,7 +189,11 @@ fn a_stronger_frame_over_the_last_bits_takes_over_and_both_are_heard() {
             let (frames, counters) = scene.hear();
             let heard: Vec<_> = frames.iter().map(|f| f.frame.bytes().to_vec()).collect();
             assert_eq!(heard, [weaker.clone(), df17()], "{start} {counters:?}");
-            assert_eq!(frames[0].repaired(), repaired);
+            assert_eq!(
+                frames[0].repaired(),
+                repaired,
+                "{start} {last:08b} {counters:?}"
+            );
             assert_eq!(frames[1].repaired(), 0);
         }
     }
@@ -313,7 +317,10 @@ fn one_wrong_bit_is_refused() {
         let mut scene = Scene::silent(2048);
         scene.send(100, &bytes);
         let (frames, counters) = scene.hear();
-        assert!(frames.is_empty() && counters.bad_parity > 0, "bit {bit}");
+        assert!(
+            frames.is_empty() && counters.bad_parity > 0,
+            "bit {bit} {frames:?} {counters:?}"
+        );
     }
 }
 
@@ -345,14 +352,15 @@ fn stuck_and_toggling_inputs_give_no_frame_and_no_end() {
 }
 
 #[test]
-fn noise_gives_no_frame_and_few_candidates() {
+fn noise_gives_no_frame_and_few_parities_to_try() {
     let mut scene = Scene::silent(8_000_000);
     scene.flip(0.5, 99);
     let (frames, counters) = scene.hear();
     assert!(frames.is_empty());
-    // A second of the worst noise: what the core's time is reckoned with.
-    assert!(counters.candidates < 20_000, "{counters:?}");
-    assert!(counters.demodulated < 1_000, "{counters:?}");
+    // A second of the worst noise. All the time there is goes into looking at it, but each parity tried may fit by chance.
+    assert!(counters.demodulated < 15_000, "{counters:?}");
+    let trials = counters.trials_exact + counters.trials_address + counters.trials_repair;
+    assert!(trials < 300, "{counters:?}");
 }
 
 #[test]

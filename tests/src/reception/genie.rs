@@ -5,12 +5,13 @@
 //!         └ power, 8 Msps ──────────────┘
 //! ```
 //! The genie needs no gate and no preamble, no parity and no address: it counts a frame as heard with up to so many wrong bits, at whichever phase has fewest. No receiver
-//! that decides each bit by counting the ones of its two halves decodes more. The second row of each ratio is not limited to one bit a sample: it adds the
+//! that decides each bit by counting the ones of its two halves decodes more. The rows `second` are from the second sampler's samples. The last row of each ratio is not limited to one bit a sample: it adds the
 //! power of each half of a bit before detector and comparator, which is the best that a receiver of this bandwidth can do without the carrier's phase.
 
 use super::native::{self, Rendered, SLICERS};
 use super::points::Point;
 use super::score::score;
+use demod::ARRIVAL_TICKS_PER_SAMPLE;
 use std::fmt::Write;
 use twin::front_end::{FrontEnd, Level, Player, PulseSource, Slicer, edge_tick};
 use twin::source::scene::{Role, Scene, wave};
@@ -49,15 +50,28 @@ pub fn rows(point: &Point, floor_db: f32, rc_over_mv: f64) -> Vec<String> {
         }
         let (decoded, counters) = native::run_at(&level, slicer, mv);
         let decoded = score(&scene, &decoded).decoded;
-        let samples = one_bit(&level, slicer, mv);
+        let samples = one_bit(&level, slicer, mv, TICKS_PER_SAMPLE);
         let mut row = format!("{:<10}{name:<8}{decoded:>9}", point.name);
-        row += &shares(&scene, &samples);
+        row += &shares(&scene, |phase, sent, start_ps| {
+            let start = (start_ps / SAMPLE_PS) as usize + PREAMBLE;
+            wrong_bits(&samples, start + phase - EARLIEST, sent)
+        });
         for (stage, count) in counters.stages() {
             if count > 0 && stage != "words" {
                 let _ = write!(row, " {stage}={count}");
             }
         }
         rows.push(row);
+        let fine = one_bit(&level, slicer, mv, u64::from(ARRIVAL_TICKS_PER_SAMPLE));
+        rows.push(format!(
+            "{:<10}{:<8}{:>9}{}",
+            point.name,
+            "  second",
+            "-",
+            shares(&scene, |phase, sent, start_ps| fine_wrong_bits(
+                &fine, phase, start_ps, sent
+            ))
+        ));
     }
     let powers = full_precision(&level);
     rows.push(format!(
@@ -65,13 +79,16 @@ pub fn rows(point: &Point, floor_db: f32, rc_over_mv: f64) -> Vec<String> {
         point.name,
         "power",
         "-",
-        shares(&scene, &powers)
+        shares(&scene, |phase, sent, start_ps| {
+            let start = (start_ps / SAMPLE_PS) as usize + PREAMBLE;
+            wrong_bits(&powers, start + phase - EARLIEST, sent)
+        })
     ));
     rows
 }
 
-/// How many wanted frames have at most 0, 1 and 2 wrong bits, of how many.
-fn shares(scene: &Scene, samples: &[f32]) -> String {
+/// How many wanted frames have at most 0, 1 and 2 wrong bits at their best phase, of how many; `wrong` counts those of a phase, of bits sent from an instant (ps) on.
+fn shares(scene: &Scene, wrong: impl Fn(usize, &[u8], u64) -> usize) -> String {
     let mut within = [0; 3];
     let mut frames = 0;
     for emission in scene.of_role(Role::Wanted) {
@@ -79,9 +96,9 @@ fn shares(scene: &Scene, samples: &[f32]) -> String {
             continue;
         };
         frames += 1;
-        let start = (emission.arrival_ps() / SAMPLE_PS) as usize + PREAMBLE;
+        let start_ps = emission.arrival_ps();
         let fewest = (0..PHASES)
-            .map(|phase| wrong_bits(samples, start + phase - EARLIEST, frame.bytes()))
+            .map(|phase| wrong(phase, frame.bytes(), start_ps))
             .min()
             .unwrap_or(usize::MAX);
         for (most, count) in within.iter_mut().enumerate() {
@@ -112,8 +129,26 @@ fn wrong_bits(samples: &[f32], first: usize, sent: &[u8]) -> usize {
     wrong
 }
 
-/// The comparator's level at each sample, 0 or 1.
-fn one_bit(level: &Rendered, slicer: Slicer, mv: f64) -> Vec<f32> {
+/// The same from the second sampler, eight samples of each half; a phase is one of its samples.
+fn fine_wrong_bits(samples: &[f32], phase: usize, start_ps: u64, sent: &[u8]) -> usize {
+    const EARLIEST_TICKS: u64 = 14;
+    let first_tick = start_ps * 3 / 25_000 + PREAMBLE as u64 * TICKS_PER_SAMPLE - EARLIEST_TICKS;
+    let every = u64::from(ARRIVAL_TICKS_PER_SAMPLE);
+    let mut wrong = 0;
+    for bit in 0..sent.len() * 8 {
+        let at = (first_tick + 120 * bit as u64).div_ceil(every) as usize + phase;
+        let Some(bit_samples) = samples.get(at..at + 17) else {
+            return usize::MAX;
+        };
+        let margin = bit_samples[..8].iter().sum::<f32>() - bit_samples[9..].iter().sum::<f32>();
+        let one = sent[bit / 8] >> (7 - bit % 8) & 1 != 0;
+        wrong += usize::from((margin > 0.0) != one);
+    }
+    wrong
+}
+
+/// The comparator's level at each sample, 0 or 1, a sample every so many ticks.
+fn one_bit(level: &Rendered, slicer: Slicer, mv: f64, every: u64) -> Vec<f32> {
     let mut player = Player::new(level.clone(), &FrontEnd::with_slicer(slicer));
     player.set_trigger_level_mv(mv);
     let (mut samples, mut edges) = (Vec::new(), Vec::new());
@@ -123,11 +158,11 @@ fn one_bit(level: &Rendered, slicer: Slicer, mv: f64) -> Vec<f32> {
         edges.clear();
         player.next_edges(until_ps, &mut edges);
         for edge in &edges {
-            let before = edge_tick(edge.at_ps).div_ceil(TICKS_PER_SAMPLE) as usize;
+            let before = edge_tick(edge.at_ps).div_ceil(every) as usize;
             samples.resize(before.max(samples.len()), high);
             high = f32::from(u8::from(edge.level));
         }
-        samples.resize((until_ps / SAMPLE_PS) as usize, high);
+        samples.resize((until_ps * 3 / 25_000 / every) as usize, high);
     }
     samples
 }
