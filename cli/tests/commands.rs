@@ -243,6 +243,61 @@ fn a_profile_names_the_functions_of_both_cores() {
 }
 
 #[test]
+fn replies_are_printed_if_asked_for_and_cost_no_frame() {
+    let folder = root().join("target/tmp");
+    std::fs::create_dir_all(&folder).expect("a folder for temporary files");
+    let air = folder.join(format!("replies-{}.cs16", std::process::id()));
+    let air = air.to_str().expect("UTF-8");
+    let scene = [
+        "scene",
+        air,
+        "--format",
+        "cs16",
+        "--rate",
+        "16000000",
+        "--frames",
+        "60",
+        "--snr",
+        "25",
+        "--mode-ac",
+        "3000",
+        "--mode-ac-snr",
+        "25..45",
+    ];
+    let output = squitter(&scene);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{told}");
+    let replay = |out: &str, options: &[&str]| {
+        let base = ["replay", air, "--format", "cs16", "--rate", "16000000"];
+        let engine = ["--engine", "native", "--slicer", "peak", "--out", out];
+        let output = squitter(&[&base[..], &engine, options].concat());
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{told}");
+        output.stdout
+    };
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("text");
+    let (without, with) = (
+        text(replay("hex", &[])),
+        text(replay("hex", &["--mode-ac"])),
+    );
+    let bits = |line: &str| line.split(',').nth(1).map(str::to_string);
+    let is_reply = |line: &&str| bits(line).is_some_and(|bits| bits.len() == 4);
+    assert_eq!(without.lines().filter(is_reply).count(), 0);
+    let replies: Vec<&str> = with.lines().filter(is_reply).collect();
+    assert!(replies.len() > 15, "{with}");
+    for reply in &replies {
+        let code = bits(reply).expect("a column");
+        assert!(u16::from_str_radix(&code, 8).is_ok(), "{reply}");
+    }
+    let frames: Vec<&str> = with.lines().filter(|line| !is_reply(line)).collect();
+    assert_eq!(frames, without.lines().collect::<Vec<_>>());
+    let ones = |bytes: &[u8]| bytes.windows(2).filter(|two| *two == [0x1A, b'1']).count();
+    assert_eq!(ones(&replay("beast", &[])), 0);
+    assert_eq!(ones(&replay("beast", &["--mode-ac"])), replies.len());
+    std::fs::remove_file(air).expect("the recording is removed");
+}
+
+#[test]
 fn a_device_goes_on_from_its_snapshot_as_if_nothing_had_been() {
     let folder = std::env::temp_dir().join(format!("squitter-snapshot-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder for temporary files");
