@@ -16,7 +16,6 @@
 //!
 //! A candidate needs the next 960 samples, so the walk stays [`LOOKAHEAD_WORDS`] behind the writer: 160 µs.
 
-use crate::arrival::{self, Arrival, COARSE_SIGMA, Samples};
 use crate::budget::{self, Budget};
 use crate::calibration::Calibration;
 use crate::counters::{Counters, add};
@@ -24,15 +23,18 @@ use crate::fine::Fine;
 use crate::gate::{Gate, Pairs, REACH, STEER_WORDS, STEP_WORDS};
 use crate::headless::{self, STRONG, WAIT_WORDS};
 use crate::heard::Heard;
-use crate::level::{self, Conversions, LEVEL_START_HALF_TICKS};
+use crate::meter::Meter;
 use crate::mode_ac::{Replies, Reply, WORDS_BEFORE, WORDS_BEHIND};
 use crate::preamble::{Fits, Preambles, ones};
+use crate::raw_frame::RawFrame;
+use crate::refused::Refused;
 use crate::repair::Flips;
 use crate::ring::{RING_WORDS, Rings, SampleRing};
-use crate::trial::{Candidate, Outcome, Tried, aa, received, try_phases};
-use crate::{SAMPLES_PER_WORD, TICKS_PER_SAMPLE};
+use crate::trial::{Candidate, Outcome, Tried, aa, proved, received, try_phases};
+use crate::unread::Unread;
+use crate::{SAMPLES_PER_WORD, ticks};
+use mode_s::crc24;
 use mode_s::frame::LONG_BYTES;
-use mode_s::{Frame, crc24};
 
 /// Words that must follow a word before it is looked at: 64 + 896 samples of a long frame, its start anywhere in the word, two phases more; or a
 /// frame without preamble that starts up to seven words later.
@@ -54,9 +56,6 @@ const TAIL_SAMPLES: u64 = 80;
 /// The same behind a frame that began within 160 µs of the one before, 2 µs: near the channel's limit looking at the rest takes a sixth of the core.
 const TAIL_BACK_TO_BACK: u64 = 16;
 const BACK_TO_BACK_SAMPLES: u64 = 1280;
-/// Words behind which a frame is no longer measured, 2.8 ms: the rings of second sampler and converter hold 955 and 1163 of them, and a millisecond is left before what
-/// is measured is overwritten.
-const MOST_MEASURED_AGE: u64 = 700;
 /// Words from the newest back to the first looked at, at a call's start, up to which there is a second reading: the second sampler's ring holds 955, less what a reading and the call take.
 const MOST_FRESH: u64 = 930 - budget::MOST_LATE_WORDS;
 /// Words before strong bits began in which their preamble may stand, tried.
@@ -73,85 +72,6 @@ const CLEAR: u32 = 40;
 /// Mismatches of a preamble that another transmission covers, and of one that is tried where time is short.
 const MOST_OF_COVERED: u32 = 14;
 const MOST_WHERE_SHORT: u32 = 12;
-/// Opposed places, and score, that a candidate inside such a frame must have more than the frame itself.
-const MORE_OPPOSED: u32 = 3;
-const MORE_SCORE: u32 = 4;
-/// Samples behind a weak frame's start from which on that is asked: before them stand other phases of its own preamble.
-const INSIDE_SAMPLES: u64 = 128;
-
-/// Words (of 4 us) a refused frame stands for: in the long run 2 000 a second are handed on. Measuring them is then 6 % of the core, and accepted ones, of which
-/// the channel carries 8 333, keep the queue.
-const REFUSED_GAP_WORDS: u64 = 125;
-/// Refused frames that may follow one another at once.
-const REFUSED_BURST: u64 = 16;
-
-/// A frame, and when it came. Its parity fits, unless refused frames were asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RawFrame {
-    /// The bits, repaired.
-    pub frame: Frame,
-    /// Which bits were repaired: [`RawFrame::received`] takes them back. `None`: refused.
-    pub flips: Option<Flips>,
-    /// Tick (120 MHz) of the leading edge of the preamble's first pulse, from the first capture sample, rounded down.
-    pub arrival: u64,
-    /// The rest of the arrival, in 1/256 of a tick.
-    pub arrival_parts: u8,
-    /// The arrival's standard uncertainty, in 1/256 of a tick.
-    pub arrival_sigma: u16,
-    /// Signal level at the antenna in a hundredth of a dBm.
-    pub level: Option<i16>,
-}
-
-/// The queue between the cores holds 127 of them.
-const _: () = assert!(size_of::<RawFrame>() == 32);
-
-impl RawFrame {
-    /// Whether the parity vouches for it. A refused one is good for raw outputs alone.
-    pub fn is_accepted(&self) -> bool {
-        self.flips.is_some()
-    }
-
-    /// The bits as received, before repair.
-    pub fn received(&self) -> Frame {
-        let mut bytes = [0; LONG_BYTES];
-        let sent = self.frame.bytes();
-        for (to, from) in bytes.iter_mut().zip(sent) {
-            *to = *from;
-        }
-        self.flips.unwrap_or_default().apply(&mut bytes);
-        // DF is never flipped, so the length still fits.
-        Frame::from_bytes(&bytes[..sent.len()]).unwrap_or(self.frame)
-    }
-
-    /// How many bits were repaired.
-    pub fn repaired(&self) -> u8 {
-        self.flips.unwrap_or_default().count()
-    }
-}
-
-/// A weak frame that was read and refused: words in which its own bits look like candidates.
-#[derive(Clone, Copy)]
-struct Unread {
-    from: u32,
-    words: u32,
-    opposed: u32,
-    score: u32,
-}
-
-impl Unread {
-    const NONE: Self = Self {
-        from: 0,
-        words: 0,
-        opposed: 0,
-        score: 0,
-    };
-
-    #[inline(always)]
-    fn covers(&self, word: u32) -> bool {
-        word.wrapping_sub(self.from) < self.words
-    }
-}
-
 /// The state between calls.
 pub struct Demodulator {
     /// The next word to gate, from the start of capture; even.
@@ -165,10 +85,7 @@ pub struct Demodulator {
     tells_refused: bool,
     /// Whether Mode A/C replies are searched for.
     tells_replies: bool,
-    /// One of the words just looked at, and its first sample.
-    refused: Option<([u8; LONG_BYTES], u64)>,
-    /// The word up to which the refused frames handed on have used up their share.
-    refused_until: u64,
+    refused: Refused,
     heard: Heard,
     gate: Gate,
     budget: Budget,
@@ -181,11 +98,7 @@ pub struct Demodulator {
     strong_since: u32,
     strong_last: u32,
     tried_last: u32,
-    second_samples: Samples,
-    conversions: Conversions,
-    calibration: Calibration,
-    /// The noise at the antenna, 1/100 dBm.
-    floor_cdbm: i16,
+    meter: Meter,
 }
 
 impl Demodulator {
@@ -198,8 +111,7 @@ impl Demodulator {
             accepted_end: 0,
             tells_refused: false,
             tells_replies: false,
-            refused: None,
-            refused_until: 0,
+            refused: Refused::new(),
             heard: Heard::new(),
             gate: Gate::new(),
             budget: Budget::new(),
@@ -210,16 +122,13 @@ impl Demodulator {
             strong_since: 0,
             strong_last: u32::MAX,
             tried_last: u32::MAX,
-            second_samples: Samples::new(0),
-            conversions: Conversions::new(LEVEL_START_HALF_TICKS),
-            calibration,
-            floor_cdbm: calibration.floor_cdbm,
+            meter: Meter::new(calibration),
         }
     }
 
     /// The noise at the antenna as it was measured, 1/100 dBm: what an arrival's delay is reckoned from.
     pub fn set_floor(&mut self, floor_cdbm: i16) {
-        self.floor_cdbm = floor_cdbm;
+        self.meter.floor_cdbm = floor_cdbm;
     }
 
     /// Whether frames whose parity does not fit are wanted, too: as many as there is time for.
@@ -260,9 +169,7 @@ impl Demodulator {
         self.heard.at_word(self.next);
         // A frame without preamble begins before the word that shows it.
         let from = self.next.saturating_sub(u64::from(STEER_WORDS));
-        let now = ticks(from * u64::from(SAMPLES_PER_WORD));
-        self.second_samples.follow(now);
-        self.conversions.follow(2 * now);
+        self.meter.follow(ticks(from * u64::from(SAMPLES_PER_WORD)));
         let ring = rings.samples;
         self.is_fresh = written.saturating_sub(self.next) <= MOST_FRESH;
         let mut tried = Tried::NOTHING;
@@ -271,11 +178,17 @@ impl Demodulator {
         while let Some(pairs) = self.find(ring, written, counters) {
             let accepted = self.examine(rings, pairs, counters, &mut tried);
             if let Some((bytes, first)) = self.refused.take() {
-                sink(self.measure(rings, first, newest(), &bytes, None, counters));
+                let frame = self
+                    .meter
+                    .measure(rings, first, newest(), &bytes, None, counters);
+                sink(frame);
             }
             if accepted {
                 let (first, flips) = (self.accepted_at, Some(tried.flips));
-                let frame = self.measure(rings, first, newest(), &tried.bytes, flips, counters);
+                let bytes = &tried.bytes;
+                let frame = self
+                    .meter
+                    .measure(rings, first, newest(), bytes, flips, counters);
                 if let Some(frame) = self.judge_level(frame, &tried, counters) {
                     sink(frame);
                 }
@@ -313,7 +226,7 @@ impl Demodulator {
             return Some(frame);
         }
         let word = self.accepted_at / u64::from(SAMPLES_PER_WORD);
-        (self.tells_refused && self.may_hand_on(word, counters)).then(|| RawFrame {
+        (self.tells_refused && self.refused.may_hand_on(word, counters)).then(|| RawFrame {
             frame: frame.received(),
             flips: None,
             ..frame
@@ -412,7 +325,7 @@ impl Demodulator {
         add(&counters.with_bits, STEP_WORDS);
         let word = self.next as u32;
         let (_, opposed) = pairs.best();
-        if self.unread.covers(word) && opposed < self.unread.opposed + MORE_OPPOSED {
+        if self.unread.explains(word, opposed) {
             self.pass(STEP_WORDS, counters);
             return false;
         }
@@ -456,10 +369,7 @@ impl Demodulator {
         }
         // A clear preamble's first hit is a sample earlier where a miss more passes.
         let early = u32::from(self.gate.is_lenient());
-        let mut least_score = self.gate.least_score();
-        if self.unread.covers(word) {
-            least_score = least_score.max(self.unread.score + MORE_SCORE);
-        }
+        let least_score = self.unread.least_score(word, self.gate.least_score());
         while rest != 0 {
             let hit = first_phase(rest);
             let sample = hit + early;
@@ -477,7 +387,7 @@ impl Demodulator {
             }
             let fine = Fine {
                 ring: rings.arrival,
-                samples: &self.second_samples,
+                samples: self.meter.second_samples(),
             };
             let first_bit = ticks(at_sample + u64::from(PREAMBLE_SAMPLES));
             let candidate = Candidate {
@@ -510,42 +420,14 @@ impl Demodulator {
             rest = from_phase(others, passed.min(u64::from(SAMPLES_PER_WORD)) as u32);
             add(&counters.superseded, ones(rest ^ others));
             if tried.has_bits && opposed < CLEAR && tried.outcome.has_parity() {
-                let inside = (first + INSIDE_SAMPLES) / u64::from(SAMPLES_PER_WORD);
-                let tail = (end(first, &tried.bytes) - TAIL_SAMPLES) / u64::from(SAMPLES_PER_WORD);
-                self.unread = Unread {
-                    from: inside as u32,
-                    words: (tail - inside) as u32,
-                    opposed,
-                    score: opposed - mismatches,
-                };
+                let until = end(first, &tried.bytes) - TAIL_SAMPLES;
+                self.unread = Unread::new(first, until, opposed, mismatches);
             }
             if self.tells_refused && tried.outcome.has_parity() {
-                self.refuse(at, first, tried, counters);
+                self.refused.keep(at, first, &tried.bytes, counters);
             }
         }
         false
-    }
-
-    /// Keeps a refused frame for the sink, unless there were too many.
-    #[inline(never)]
-    fn refuse(&mut self, word: u64, first: u64, tried: &Tried, counters: &Counters) {
-        if self.refused.is_some() {
-            add(&counters.withheld, 1);
-        } else if self.may_hand_on(word, counters) {
-            self.refused = Some((tried.bytes, first));
-        }
-    }
-
-    /// Whether one more refused frame may be handed on; counts it either way.
-    #[inline(never)]
-    fn may_hand_on(&mut self, word: u64, counters: &Counters) -> bool {
-        if self.refused_until > word + REFUSED_BURST * REFUSED_GAP_WORDS {
-            add(&counters.withheld, 1);
-            return false;
-        }
-        add(&counters.handed_on, 1);
-        self.refused_until = self.refused_until.max(word) + REFUSED_GAP_WORDS;
-        true
     }
 
     /// Searches where strong bits began a few words ago, if no preamble was tried there.
@@ -618,69 +500,11 @@ impl Demodulator {
         self.accepted_at = first;
         self.accepted_end = end(first, bytes);
     }
-
-    /// A frame just found, whose preamble's first sample is `first`, with what the other two rings know of it, unless that is too long ago.
-    #[inline(never)]
-    fn measure(
-        &self,
-        rings: Rings,
-        first: u64,
-        written: u64,
-        bytes: &[u8; LONG_BYTES],
-        flips: Option<Flips>,
-        counters: &Counters,
-    ) -> RawFrame {
-        let mut frame = RawFrame {
-            frame: Frame::from_long(*bytes),
-            flips,
-            arrival: ticks(first),
-            arrival_parts: 0,
-            arrival_sigma: COARSE_SIGMA,
-            level: None,
-        };
-        let first_word = first / u64::from(SAMPLES_PER_WORD);
-        if written.saturating_sub(first_word) > MOST_MEASURED_AGE {
-            add(&counters.unmeasured, 1);
-            return frame;
-        }
-        let bytes = received(bytes);
-        let arrival = arrival::measure(rings.arrival, &self.second_samples, frame.arrival, bytes);
-        let level = level::measure(
-            rings.level,
-            &self.conversions,
-            &self.calibration,
-            arrival.ticks,
-            bytes,
-        );
-        let over_floor = level.map(|level| i32::from(level) - i32::from(self.floor_cdbm));
-        let Arrival {
-            ticks,
-            parts,
-            sigma,
-        } = arrival.corrected(&self.calibration, over_floor);
-        frame.level = level;
-        (frame.arrival, frame.arrival_parts, frame.arrival_sigma) = (ticks, parts, sigma);
-        frame
-    }
 }
 
 impl Default for Demodulator {
     fn default() -> Self {
         Self::new(Calibration::ADSBEE_1090)
-    }
-}
-
-/// The address that a frame with exact parity proves; 0 where it proves none.
-fn proved(bytes: &[u8; LONG_BYTES]) -> u32 {
-    match bytes[0] >> 3 {
-        // The layout of a DF19 with another AF is the military's own.
-        19 if bytes[0] & 7 != 0 => 0,
-        // AA of a device that is no transponder may be no ICAO address.
-        18 => match mode_s::Address::of_aa(&Frame::from_long(*bytes)) {
-            mode_s::Address::Icao(icao) => icao.0,
-            mode_s::Address::NonIcao(_) => 0,
-        },
-        _ => aa(bytes),
     }
 }
 
@@ -720,12 +544,6 @@ fn count(outcome: Outcome, counters: &Counters) {
         Outcome::Exact => &counters.accepted_exact,
     };
     add(counter, 1);
-}
-
-/// Ticks of so many samples: 15 each. The black box keeps the compiler from calling the library's 64-bit multiplication instead.
-fn ticks(samples: u64) -> u64 {
-    const { assert!(TICKS_PER_SAMPLE == 15) };
-    core::hint::black_box(samples << 4) - samples
 }
 
 /// The hits from phase `sample` of a word on.

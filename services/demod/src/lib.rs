@@ -35,20 +35,25 @@ mod grid;
 mod headless;
 mod heard;
 mod level;
+mod meter;
 mod mode_ac;
 mod plausible;
 mod preamble;
+mod raw_frame;
+mod refused;
 mod repair;
 mod reply_level;
 mod ring;
 mod trial;
+mod unread;
 
 pub use arrival::ARRIVAL_TICKS_PER_SAMPLE;
 pub use calibration::Calibration;
 pub use counters::{Counters, CountersSnapshot};
-pub use demodulator::{Demodulator, LOOKAHEAD_WORDS, RawFrame};
+pub use demodulator::{Demodulator, LOOKAHEAD_WORDS};
 pub use level::{LEVEL_HALF_TICKS, LEVEL_START_HALF_TICKS};
 pub use mode_ac::Reply;
+pub use raw_frame::RawFrame;
 pub use repair::Flips;
 pub use reply_level::ReplyLevels;
 pub use ring::{ARRIVAL_WORDS, ArrivalRing, LEVEL_WORDS, LevelRing, RING_WORDS, Rings, SampleRing};
@@ -58,3 +63,9 @@ pub const TICKS_PER_SAMPLE: u64 = 15;
 
 /// Samples a word of the ring.
 pub const SAMPLES_PER_WORD: u32 = 32;
+
+/// Ticks of so many samples: 15 each. The black box keeps the compiler from calling the library's 64-bit multiplication instead.
+fn ticks(samples: u64) -> u64 {
+    const { assert!(TICKS_PER_SAMPLE == 15) };
+    core::hint::black_box(samples << 4) - samples
+}

@@ -30,6 +30,7 @@ use crate::plausible;
 use crate::preamble::Fits;
 use crate::repair::{Flips, Weakest};
 use crate::ring::{Aligned, SampleRing};
+use mode_s::Frame;
 use mode_s::crc24;
 use mode_s::frame::{LONG_BYTES, SHORT_BYTES};
 use mode_s::parity::HIGHEST_INTERROGATOR_CODE;
@@ -477,5 +478,19 @@ pub(crate) fn aa(frame: &[u8]) -> u32 {
     match *frame {
         [_, a, b, c, ..] => u32::from_be_bytes([0, a, b, c]),
         _ => 0,
+    }
+}
+
+/// The address that a frame with exact parity proves; 0 where it proves none.
+pub(crate) fn proved(bytes: &[u8; LONG_BYTES]) -> u32 {
+    match bytes[0] >> 3 {
+        // The layout of a DF19 with another AF is the military's own.
+        19 if bytes[0] & 7 != 0 => 0,
+        // AA of a device that is no transponder may be no ICAO address.
+        18 => match mode_s::Address::of_aa(&Frame::from_long(*bytes)) {
+            mode_s::Address::Icao(icao) => icao.0,
+            mode_s::Address::NonIcao(_) => 0,
+        },
+        _ => aa(bytes),
     }
 }
