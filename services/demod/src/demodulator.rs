@@ -395,8 +395,9 @@ impl Demodulator {
                 word,
                 sample,
                 fits,
+                is_short,
                 is_clear: mismatches <= MOST_OF_CLEAR || opposed >= CLEAR,
-                fine: (self.is_fresh && !is_inside).then_some((fine, first_bit)),
+                fine: (self.is_fresh && !is_short).then_some((fine, first_bit)),
             };
             try_phases(candidate, &self.heard, &mut self.budget, counters, tried);
             add(&counters.demodulated, 1);

@@ -183,9 +183,11 @@ pub(crate) struct Candidate<'a> {
     pub(crate) sample: u32,
     /// How well a preamble fits there and around it.
     pub(crate) fits: Fits,
+    /// Whether there is time for little: one reading and one repair.
+    pub(crate) is_short: bool,
     /// Whether the first sampler's bits are likely to be right.
     pub(crate) is_clear: bool,
-    /// The second sampler, and the tick at which the first bit would begin. `None` when its samples may be overwritten already.
+    /// The second sampler, and the tick at which the first bit would begin. `None` where time is short, and when its samples may be overwritten already.
     pub(crate) fine: Option<(Fine<'a>, u64)>,
 }
 
@@ -199,13 +201,13 @@ pub(crate) fn try_phases(
     tried: &mut Tried,
 ) {
     let Candidate {
+        is_short,
         ring,
         word,
         sample,
         fits,
         ..
     } = at;
-    let is_short = budget.is_short();
     let likeliest = likeliest(&fits);
     (tried.outcome, tried.phase, tried.flips) = (Outcome::NoBits, 0, Flips::NONE);
     (tried.has_bits, tried.is_clear) = (false, false);
@@ -234,7 +236,6 @@ pub(crate) fn try_phases(
     }
     let mut is_last = is_short;
     if !tried.outcome.is_accepted()
-        && !is_short
         && let Some((fine, first_bit)) = at.fine
     {
         let phase = phase_at(likeliest);
