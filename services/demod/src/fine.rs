@@ -355,6 +355,53 @@ mod tests {
         }
     }
 
+    /// The same with so many ticks in the middle of every half bit the other way round.
+    fn blurred(bytes: &[u8], ticks: u64) -> ArrivalRing {
+        let ring = ArrivalRing::new();
+        let level = |tick: u64| {
+            let Some(since) = tick.checked_sub(FIRST_BIT) else {
+                return false;
+            };
+            let (bit, rest) = (since as usize / 120, since % 120);
+            let Some(byte) = bytes.get(bit / 8) else {
+                return false;
+            };
+            let high = u64::from(byte >> (7 - bit % 8) & 1) != rest / 60;
+            high ^ (20..20 + ticks).contains(&(rest % 60))
+        };
+        let first = FIRST_BIT / 7 / 32 - 2;
+        for word in first..first + 70 {
+            let samples = (0..32).fold(0, |samples, sample| {
+                samples << 1 | u32::from(level((word * 32 + sample) * 7))
+            });
+            ring.store(word, samples);
+        }
+        ring
+    }
+
+    #[test]
+    fn what_an_address_alone_vouches_for_must_be_sure() {
+        const ADDRESS: u32 = 0x4D_2023;
+        let mut heard = Heard::new();
+        heard.note(ADDRESS, None);
+        // Without an alert and with one (FS 2), which hardly anybody sends.
+        for (first, blur, expected) in [
+            (0x20, 0, Outcome::Address),
+            (0x20, 11, Outcome::Address),
+            (0x20, 14, Outcome::Unsure),
+            (0x22, 0, Outcome::Address),
+            (0x22, 11, Outcome::Unsure),
+        ] {
+            let mut frame = [first, 0x00, 0x06, 0xA2, 0, 0, 0];
+            let parity = crc24::remainder(&frame[..4]) ^ ADDRESS;
+            frame[4..].copy_from_slice(&parity.to_be_bytes()[1..]);
+            let (found, _) = read(&blurred(&frame, blur), 0, &heard);
+            let found = found.expect("bits");
+            assert_eq!(found.outcome, expected, "{first:02x} {blur}");
+            assert_eq!(found.bytes[..7], frame);
+        }
+    }
+
     #[test]
     fn noise_and_silence_are_given_up_before_their_parity_is_asked() {
         let mut state = 1u32;

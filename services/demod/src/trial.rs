@@ -495,3 +495,88 @@ pub(crate) fn proved(bytes: &[u8; LONG_BYTES]) -> u32 {
         _ => aa(bytes),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ADDRESS: u32 = 0x4D_2023;
+    const WRONG: usize = 40;
+
+    /// What is made of a frame that begins so and has one wrong, least certain bit, if its address was heard.
+    fn explained(first: &[u8], address_in_parity: u32, sure: Sure, heard: bool) -> Option<Outcome> {
+        let mut bytes = [0; LONG_BYTES];
+        bytes[..first.len()].copy_from_slice(first);
+        let length = received(&bytes).len();
+        let parity = crc24::remainder(&bytes[..length - 3]) ^ address_in_parity;
+        bytes[length - 3..length].copy_from_slice(&parity.to_be_bytes()[1..]);
+        let sent = bytes;
+        let wrong = WRONG.min(length * 8 - 25);
+        bytes[wrong / 8] ^= 0x80 >> (wrong % 8);
+        let mut margins = [9i8; LONG_BYTES * 8];
+        margins[wrong] = 1;
+        let mut known = Heard::new();
+        if heard {
+            known.note(ADDRESS, None);
+        }
+        let residual = crc24::residual(received(&bytes));
+        let weakest = Weakest::of(&margins[..length * 8], BEYOND_DOUBT);
+        let counters = Counters::new();
+        let found = explain(&mut bytes, residual, &weakest, sure, &known, &counters);
+        found.map(|(outcome, _)| {
+            assert_eq!(bytes, sent);
+            outcome
+        })
+    }
+
+    const SURE: Sure = Sure {
+        by_address: true,
+        unheard: true,
+    };
+    const UNSURE: Sure = Sure {
+        by_address: false,
+        unheard: false,
+    };
+
+    #[test]
+    fn a_repaired_squitter_is_believed_of_an_address_heard_or_sure_and_plausible() {
+        let squitter = [0x8D, 0x4D, 0x20, 0x23, 0x58];
+        // Type code 24 is for tests.
+        let odd = [0x8D, 0x4D, 0x20, 0x23, 0xC0];
+        let repaired = Some(Outcome::Repaired);
+        assert_eq!(explained(&squitter, 0, UNSURE, true), repaired);
+        assert_eq!(explained(&squitter, 0, SURE, false), repaired);
+        assert_eq!(explained(&squitter, 0, UNSURE, false), None);
+        assert_eq!(explained(&odd, 0, SURE, false), None);
+        assert_eq!(explained(&odd, 0, UNSURE, true), repaired);
+        // DF19 is the military's own.
+        assert_eq!(explained(&[0x98, 0x4D, 0x20, 0x23], 0, SURE, true), None);
+    }
+
+    #[test]
+    fn a_repaired_reply_is_believed_of_an_address_heard_if_sure_usual_and_plausible() {
+        let reply = [0x20, 0x00, 0x06, 0xA2];
+        let repaired = Some(Outcome::RepairedAddress);
+        assert_eq!(explained(&reply, ADDRESS, SURE, true), repaired);
+        assert_eq!(explained(&reply, ADDRESS, SURE, false), None);
+        assert_eq!(explained(&reply, ADDRESS, UNSURE, true), None);
+        // FS 2, an alert; FS 6, not assigned.
+        assert_eq!(explained(&[0x22, 0, 6, 0xA2], ADDRESS, SURE, true), None);
+        assert_eq!(explained(&[0x26, 0, 6, 0xA2], ADDRESS, SURE, true), None);
+    }
+
+    #[test]
+    fn what_an_address_vouches_for_must_be_sure() {
+        for outcome in [
+            Outcome::Address,
+            Outcome::Interrogator,
+            Outcome::Implausible,
+        ] {
+            assert_eq!(outcome.if_sure(false), Outcome::Unsure);
+            assert_eq!(outcome.if_sure(true), outcome);
+        }
+        for outcome in [Outcome::Exact, Outcome::BadParity, Outcome::UnknownAddress] {
+            assert_eq!(outcome.if_sure(false), outcome);
+        }
+    }
+}

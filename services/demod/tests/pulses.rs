@@ -24,12 +24,15 @@ fn rings(samples: &SampleRing) -> Rings<'_> {
 #[derive(Default)]
 struct Scene {
     samples: Vec<bool>,
+    /// Samples that the first sampler alone has the other way round.
+    mistaken: Vec<usize>,
 }
 
 impl Scene {
     fn silent(samples: usize) -> Self {
         Self {
             samples: vec![false; samples],
+            mistaken: Vec::new(),
         }
     }
 
@@ -67,6 +70,11 @@ impl Scene {
 
     /// Plays the scene in DMA blocks, and as much silence as lets the last frame through.
     fn hear(&self) -> (Vec<RawFrame>, CountersSnapshot) {
+        self.hear_by(32)
+    }
+
+    /// The same in calls of so many words.
+    fn hear_by(&self, words_a_call: usize) -> (Vec<RawFrame>, CountersSnapshot) {
         let (samples, arrival, level) = (SampleRing::new(), ArrivalRing::new(), LevelRing::new());
         let rings = Rings {
             samples: &samples,
@@ -78,14 +86,20 @@ impl Scene {
         let mut demodulator = Demodulator::new(Calibration::without_delay());
         let mut frames = Vec::new();
         let mut second = 0;
-        for written in 1..=self.samples.len().div_ceil(32) + LOOKAHEAD_WORDS as usize + 32 {
-            samples.store(written as u64 - 1, self.word(32 * (written - 1), |at| at));
+        for written in 1..=self.samples.len().div_ceil(32) + LOOKAHEAD_WORDS as usize + words_a_call
+        {
+            let first = 32 * (written - 1);
+            let mistaken = self.mistaken.iter().filter_map(|at| at.checked_sub(first));
+            let turned = mistaken
+                .filter(|at| *at < 32)
+                .fold(0, |bits, at| bits | 1 << (31 - at));
+            samples.store(written as u64 - 1, self.word(first, |at| at) ^ turned);
             // The second sampler: a sample in 7 ticks where the first has one in 15.
             while (second + 1) * 32 * 7 <= written * 480 {
                 arrival.store(second as u64, self.word(32 * second, |at| at * 7 / 15));
                 second += 1;
             }
-            if written % 32 == 0 {
+            if written % words_a_call == 0 {
                 let written = written as u64;
                 demodulator.run(
                     rings,
@@ -321,6 +335,23 @@ fn one_wrong_bit_is_refused() {
             frames.is_empty() && counters.bad_parity > 0,
             "bit {bit} {frames:?} {counters:?}"
         );
+    }
+}
+
+#[test]
+fn the_second_sampler_is_asked_where_the_first_is_wrong_unless_its_samples_may_be_gone() {
+    for (words_a_call, heard) in [(32, 1), (640, 0)] {
+        for start in 640..672 {
+            let mut scene = Scene::silent(2048);
+            scene.send(start, &df17());
+            for bit in [20, 50, 80] {
+                let first = start + 64 + 8 * bit;
+                scene.mistaken.extend(first..first + 8);
+            }
+            let (frames, counters) = scene.hear_by(words_a_call);
+            assert_eq!(frames.len(), heard, "{start} {counters:?}");
+            assert!(frames.iter().all(|frame| frame.frame.bytes() == df17()));
+        }
     }
 }
 
