@@ -284,18 +284,18 @@ mod tests {
     ];
     const FIRST_BIT: u64 = 5_000_000;
 
-    /// The ring as the second sampler fills it with these bits from [`FIRST_BIT`] on; in the bits of `turned`, the samples of this many ticks are the other way round.
-    fn sampled(bytes: &[u8], turned: &[usize], ticks: u64) -> ArrivalRing {
+    /// The ring as the second sampler fills it with these bits from [`FIRST_BIT`] on; samples are the other way round where that is said of a bit and the ticks since its half began.
+    fn sampled(bytes: &[u8], is_turned: impl Fn(usize, u64) -> bool) -> ArrivalRing {
         let ring = ArrivalRing::new();
         let level = |tick: u64| {
             let Some(since) = tick.checked_sub(FIRST_BIT) else {
                 return false;
             };
             let (bit, rest) = (since as usize / 120, since % 120);
-            let high = bytes
-                .get(bit / 8)
-                .is_some_and(|byte| u64::from(byte >> (7 - bit % 8) & 1) != rest / 60);
-            high ^ (turned.contains(&bit) && rest % 60 < ticks)
+            bytes.get(bit / 8).is_some_and(|byte| {
+                let high = u64::from(byte >> (7 - bit % 8) & 1) != rest / 60;
+                high ^ is_turned(bit, rest % 60)
+            })
         };
         let first = FIRST_BIT / 7 / 32 - 2;
         for word in first..first + 70 {
@@ -326,7 +326,7 @@ mod tests {
 
     #[test]
     fn a_clean_frame_is_read_from_two_samples_around_its_place() {
-        let ring = sampled(&DF17, &[], 0);
+        let ring = sampled(&DF17, |_, _| false);
         for off in -20..=20 {
             let (found, trials) = read(&ring, off, &Heard::new());
             let found = found.expect("bits");
@@ -342,7 +342,9 @@ mod tests {
         // 60 ticks turn a bit around, half of them leave it undecided.
         let weak: &[usize] = &[40, 77, 99];
         for wrong in 1..=3 {
-            let ring = sampled(&DF17, &weak[..wrong], 44);
+            let ring = sampled(&DF17, |bit, ticks| {
+                weak[..wrong].contains(&bit) && ticks < 44
+            });
             let (found, _) = read(&ring, 0, &Heard::new());
             let found = found.expect("bits");
             if wrong == 3 {
@@ -353,30 +355,6 @@ mod tests {
                 assert_eq!(usize::from(found.flips.count()), wrong);
             }
         }
-    }
-
-    /// The same with so many ticks in the middle of every half bit the other way round.
-    fn blurred(bytes: &[u8], ticks: u64) -> ArrivalRing {
-        let ring = ArrivalRing::new();
-        let level = |tick: u64| {
-            let Some(since) = tick.checked_sub(FIRST_BIT) else {
-                return false;
-            };
-            let (bit, rest) = (since as usize / 120, since % 120);
-            let Some(byte) = bytes.get(bit / 8) else {
-                return false;
-            };
-            let high = u64::from(byte >> (7 - bit % 8) & 1) != rest / 60;
-            high ^ (20..20 + ticks).contains(&(rest % 60))
-        };
-        let first = FIRST_BIT / 7 / 32 - 2;
-        for word in first..first + 70 {
-            let samples = (0..32).fold(0, |samples, sample| {
-                samples << 1 | u32::from(level((word * 32 + sample) * 7))
-            });
-            ring.store(word, samples);
-        }
-        ring
     }
 
     #[test]
@@ -395,7 +373,9 @@ mod tests {
             let mut frame = [first, 0x00, 0x06, 0xA2, 0, 0, 0];
             let parity = crc24::remainder(&frame[..4]) ^ ADDRESS;
             frame[4..].copy_from_slice(&parity.to_be_bytes()[1..]);
-            let (found, _) = read(&blurred(&frame, blur), 0, &heard);
+            // So many ticks in the middle of every half bit.
+            let ring = sampled(&frame, |_, ticks| (20..20 + blur).contains(&ticks));
+            let (found, _) = read(&ring, 0, &heard);
             let found = found.expect("bits");
             assert_eq!(found.outcome, expected, "{first:02x} {blur}");
             assert_eq!(found.bytes[..7], frame);

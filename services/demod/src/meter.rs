@@ -92,3 +92,31 @@ impl Meter {
         frame
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ring::{ArrivalRing, LevelRing, SampleRing};
+
+    #[test]
+    fn what_core_1_comes_to_too_late_is_not_measured_but_counted() {
+        let (samples, arrival, level) = (SampleRing::new(), ArrivalRing::new(), LevelRing::new());
+        let rings = Rings {
+            samples: &samples,
+            arrival: &arrival,
+            level: &level,
+        };
+        let meter = Meter::new(Calibration::ADSBEE_1090);
+        let first = 100 * u64::from(SAMPLES_PER_WORD) + 5;
+        for (age, unmeasured) in [(MOST_MEASURED_AGE, 0), (MOST_MEASURED_AGE + 1, 1)] {
+            let counters = Counters::new();
+            let bytes = [0x8D; LONG_BYTES];
+            let frame = meter.measure(rings, first, 100 + age, &bytes, None, &counters);
+            assert_eq!(counters.snapshot().unmeasured, unmeasured);
+            if unmeasured == 1 {
+                assert_eq!(frame.arrival, ticks(first));
+                assert_eq!((frame.arrival_sigma, frame.level), (COARSE_SIGMA, None));
+            }
+        }
+    }
+}

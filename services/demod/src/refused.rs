@@ -59,3 +59,37 @@ impl Refused {
         true
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_burst_is_handed_on_then_one_for_every_gap_and_the_rest_is_counted() {
+        let (mut refused, counters) = (Refused::new(), Counters::new());
+        let counted = || {
+            let counters = counters.snapshot();
+            (counters.handed_on, counters.withheld)
+        };
+        // The burst, and one that uses up what is left.
+        for _ in 0..REFUSED_BURST + 1 {
+            assert!(refused.may_hand_on(1000, &counters));
+        }
+        assert!(!refused.may_hand_on(1000, &counters));
+        assert!(!refused.may_hand_on(1000 + REFUSED_GAP_WORDS - 1, &counters));
+        assert!(refused.may_hand_on(1000 + REFUSED_GAP_WORDS, &counters));
+        assert!(!refused.may_hand_on(1000 + REFUSED_GAP_WORDS, &counters));
+        assert_eq!(counted(), (REFUSED_BURST as u32 + 2, 3));
+    }
+
+    #[test]
+    fn one_is_kept_until_it_is_taken() {
+        let (mut refused, counters) = (Refused::new(), Counters::new());
+        refused.keep(0, 7, &[1; LONG_BYTES], &counters);
+        refused.keep(0, 8, &[2; LONG_BYTES], &counters);
+        assert_eq!(refused.take(), Some(([1; LONG_BYTES], 7)));
+        assert_eq!(refused.take(), None);
+        let counters = counters.snapshot();
+        assert_eq!((counters.handed_on, counters.withheld), (1, 1));
+    }
+}
