@@ -566,3 +566,40 @@ pub(crate) fn first_phase(hits: u32) -> u32 {
     }
     phase
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mode_s::Frame;
+
+    #[test]
+    fn a_known_address_vouches_only_at_a_level_near_its_own() {
+        const ADDRESS: u32 = 0x4D_2023;
+        let mut bytes = [0; LONG_BYTES];
+        bytes[0] = 0x20;
+        let parity = crc24::remainder(&bytes[..4]) ^ ADDRESS;
+        bytes[4..7].copy_from_slice(&parity.to_be_bytes()[1..]);
+        let tried = Tried {
+            outcome: Outcome::Address,
+            bytes,
+            ..Tried::NOTHING
+        };
+        for (level, is_given) in [(-6_000, true), (-9_000, false)] {
+            let (mut demodulator, counters) = (Demodulator::default(), Counters::new());
+            demodulator.heard.note(ADDRESS, Some(-6_000));
+            let frame = RawFrame {
+                frame: Frame::from_long(bytes),
+                flips: Some(Flips::NONE),
+                arrival: 0,
+                arrival_parts: 0,
+                arrival_sigma: 0,
+                level: Some(level),
+            };
+            let given = demodulator.judge_level(frame, &tried, &counters);
+            assert_eq!(given.is_some(), is_given, "{level}");
+            let counters = counters.snapshot();
+            let counted = (counters.accepted_address, counters.unlikely);
+            assert_eq!(counted, (u32::from(is_given), u32::from(!is_given)));
+        }
+    }
+}
