@@ -5,10 +5,12 @@
 //!
 //! `--genie`: instead, just above the noise, where frames are lost and what could be decoded at best (`tests::reception::genie`); `--floor DB` is the height of a standing trigger
 //! level over the noise, `--rc-over MV` moves the following one.
+//!
+//! `--evidence`: instead, what eight samples of a half bit say (`tests::reception::evidence`), beside the table that the demodulator has; `--save` renews that.
 
 use tests::Bench;
 use tests::reception::native::FLOOR_OVER_NOISE_DB;
-use tests::reception::{genie, mode_ac, table};
+use tests::reception::{evidence, genie, mode_ac, table};
 
 fn main() -> std::io::Result<()> {
     if !tests::is_bench() {
@@ -20,8 +22,11 @@ fn main() -> std::io::Result<()> {
         replies(&mut bench);
         return bench.finish("replies alone");
     }
-    if std::env::args().any(|argument| argument == "--genie") {
+    if tests::flag("--genie") {
         return at_best();
+    }
+    if tests::flag("--evidence") {
+        return learned();
     }
     let mut bench = Bench::new("sensitivity", "row");
     bench.line(&format!(
@@ -66,4 +71,26 @@ fn at_best() -> std::io::Result<()> {
         }
     }
     bench.finish(&format!("points={} frames={}", WEAK.len(), table::FRAMES))
+}
+
+fn learned() -> std::io::Result<()> {
+    let path = tests::root().join(evidence::FILE);
+    let table = evidence::table();
+    let numbers = |text: &str| -> Vec<i32> {
+        let words = text.split([' ', ',', '\n', '[', ']']);
+        words.filter_map(|word| word.parse().ok()).collect()
+    };
+    let (learned, known) = (numbers(&table), numbers(&std::fs::read_to_string(&path)?));
+    let off = learned.iter().zip(&known).map(|(a, b)| a.abs_diff(*b));
+    let equal = off.clone().filter(|off| *off == 0).count();
+    print!("{table}");
+    if tests::flag("--save") {
+        std::fs::write(&path, table)?;
+    }
+    println!(
+        "result: patterns={} equal={equal} most_off={}",
+        learned.len(),
+        off.max().unwrap_or(0)
+    );
+    Ok(())
 }

@@ -33,7 +33,7 @@ pub(crate) const FIND_PHASE: u32 = 2_400;
 /// Reading a byte from the second sampler.
 pub(crate) const READ_BYTE: u32 = 280;
 /// Explaining what was read by flips.
-pub(crate) const EXPLAIN: u32 = 2_000;
+pub(crate) const EXPLAIN: u32 = 2_600;
 /// A search for a frame without preamble.
 pub(crate) const SEARCH: u32 = 6_000;
 /// Measuring an accepted frame and handing it on.

@@ -29,6 +29,7 @@ mod budget;
 mod calibration;
 mod counters;
 mod demodulator;
+pub mod evidence;
 mod fine;
 mod gate;
 mod grid;

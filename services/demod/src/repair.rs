@@ -4,9 +4,9 @@
 //! residual `S(a) ^ S(b)`, where the right one has 0 (DF11, 17, 18) or the address (address parity).
 //!
 //! ```text
-//!   residual ─ S(a) = 0?                     10 trials     at most two of the ten least certain bits
-//!            ─ S(a) ^ S(b) = 0?              45 trials
-//!            ─ S(a) = an address heard?      10 trials     address parity: at most one
+//!   residual ─ S(a) = 0?                     16 trials     one of the sixteen least certain bits
+//!            ─ S(a) ^ S(b) = 0?              64 trials     two of them whose places in the order of certainty, 0 to 15, have a sum of 15 at most
+//!            ─ S(a) = an address heard?      10 trials     address parity: one of the ten least certain
 //! ```
 //! Each trial fits by chance once in 2^24 (address parity: once for every address heard), so trials are counted, and what fits must come from an
 //! address heard exactly within the last minute, or be a squitter (DF17, 18) of certain bits and plausible fields. The bits of DF are never flipped: they decide the length and the rule.
@@ -17,8 +17,11 @@ use crate::heard::Heard;
 use mode_s::crc24::GENERATOR;
 use mode_s::frame::LONG_BYTES;
 
-/// Least certain bits that may be flipped.
-const CANDIDATES: usize = 10;
+/// Least certain bits that may be flipped, and those of them where an address alone vouches.
+const CANDIDATES: usize = 16;
+const CANDIDATES_BY_ADDRESS: usize = 10;
+/// Pairs of them that are tried: two bits that are both far from the least certain are hardly both wrong.
+const MOST_PLACES: usize = CANDIDATES - 1;
 /// Bits of DF.
 const DF_BITS: u32 = 5;
 /// What a place without a bit adds to a residual: no residual and no address has these bits.
@@ -82,7 +85,7 @@ impl Flips {
     }
 }
 
-/// The ten least certain bits of a frame, the least certain first; fewer where the others are beyond doubt.
+/// The least certain bits of a frame, the least certain first; fewer where the others are beyond doubt.
 pub(crate) struct Weakest {
     bits: [u8; CANDIDATES],
     syndromes: [u32; CANDIDATES],
@@ -140,11 +143,15 @@ impl Weakest {
         }
         for (a, &first) in self.syndromes.iter().enumerate() {
             let rest = residual ^ first;
-            for (b, &second) in self.syndromes.iter().enumerate().skip(a + 1) {
+            let mut b = a + 1;
+            while a + b <= MOST_PLACES
+                && let Some(&second) = self.syndromes.get(b)
+            {
                 trials += 1;
                 if rest == second {
                     return (Some(self.flips(a, Some(b))), trials);
                 }
+                b += 1;
             }
         }
         (None, trials)
@@ -158,7 +165,8 @@ impl Weakest {
         heard: &Heard,
     ) -> (Option<(Flips, u32)>, u32) {
         let mut trials = 0;
-        for (a, &syndrome) in self.syndromes.iter().enumerate() {
+        let syndromes = self.syndromes.iter().enumerate();
+        for (a, &syndrome) in syndromes.take(CANDIDATES_BY_ADDRESS) {
             trials += 1;
             let address = residual ^ syndrome;
             if heard.knows(address) {
@@ -244,7 +252,7 @@ mod tests {
             let (flips, trials) = weakest.explain(crc24::residual(&bytes));
             let flips = flips.expect("found");
             assert_eq!(usize::from(flips.count()), wrong.len());
-            assert!(trials <= 55);
+            assert!(trials <= 80);
             flips.apply(&mut bytes);
             assert_eq!(bytes, DF17);
         }
@@ -252,7 +260,31 @@ mod tests {
         [17, 33, 90]
             .iter()
             .for_each(|bit| bytes[bit / 8] ^= 0x80 >> (bit % 8));
-        assert_eq!(weakest.explain(crc24::residual(&bytes)), (None, 55));
+        assert_eq!(weakest.explain(crc24::residual(&bytes)), (None, 80));
+    }
+
+    #[test]
+    fn two_bits_that_are_both_far_from_the_least_certain_are_not_tried() {
+        // Twenty bits, each surer than the one before, among others that are beyond doubt.
+        let mut sure = [100; LONG_BYTES * 8];
+        for place in 0..20 {
+            sure[40 + place] = 10 + place as i8;
+        }
+        let weakest = Weakest::of(&sure, 100);
+        for (places, is_found) in [
+            ([0, 15], true),
+            ([7, 8], true),
+            ([7, 9], false),
+            ([1, 15], false),
+            ([0, 16], false),
+        ] {
+            let mut bytes = DF17;
+            for place in places {
+                bytes[(40 + place) / 8] ^= 0x80 >> (place % 8);
+            }
+            let (flips, _) = weakest.explain(crc24::residual(&bytes));
+            assert_eq!(flips.is_some(), is_found, "{places:?}");
+        }
     }
 
     #[test]

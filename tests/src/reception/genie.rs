@@ -5,13 +5,13 @@
 //!         └ power, 8 Msps ──────────────┘
 //! ```
 //! The genie needs no gate and no preamble, no parity and no address: it counts a frame as heard with up to so many wrong bits, at whichever phase has fewest. No receiver
-//! that decides each bit by counting the ones of its two halves decodes more. The rows `second` are from the second sampler's samples. The last row of each ratio is not limited to one bit a sample: it adds the
+//! that decides each bit by counting the ones of its two halves decodes more. The rows `second` are from the second sampler's samples, as the receiver weighs them (`demod::evidence`). The last row of each ratio is not limited to one bit a sample: it adds the
 //! power of each half of a bit before detector and comparator, which is the best that a receiver of this bandwidth can do without the carrier's phase.
 
 use super::native::{self, Rendered, SLICERS};
 use super::points::Point;
 use super::score::score;
-use demod::ARRIVAL_TICKS_PER_SAMPLE;
+use demod::{ARRIVAL_TICKS_PER_SAMPLE, evidence};
 use std::fmt::Write;
 use twin::front_end::{FrontEnd, Level, Player, PulseSource, Slicer, edge_tick};
 use twin::source::scene::{Role, Scene, wave};
@@ -129,7 +129,7 @@ fn wrong_bits(samples: &[f32], first: usize, sent: &[u8]) -> usize {
     wrong
 }
 
-/// The same from the second sampler, eight samples of each half; a phase is one of its samples.
+/// The same from the second sampler, by the evidence of eight samples of each half; a phase is one of its samples.
 fn fine_wrong_bits(samples: &[f32], phase: usize, start_ps: u64, sent: &[u8]) -> usize {
     const EARLIEST_TICKS: u64 = 14;
     let first_tick = start_ps * 3 / 25_000 + PREAMBLE as u64 * TICKS_PER_SAMPLE - EARLIEST_TICKS;
@@ -140,15 +140,19 @@ fn fine_wrong_bits(samples: &[f32], phase: usize, start_ps: u64, sent: &[u8]) ->
         let Some(bit_samples) = samples.get(at..at + 17) else {
             return usize::MAX;
         };
-        let margin = bit_samples[..8].iter().sum::<f32>() - bit_samples[9..].iter().sum::<f32>();
+        let pattern = |half: &[f32]| {
+            let sample = |pattern, &sample: &f32| pattern << 1 | u32::from(sample > 0.5);
+            half.iter().fold(0, sample)
+        };
+        let margin = evidence::margin(pattern(&bit_samples[..8]), pattern(&bit_samples[9..]));
         let one = sent[bit / 8] >> (7 - bit % 8) & 1 != 0;
-        wrong += usize::from((margin > 0.0) != one);
+        wrong += usize::from((margin >= 0) != one);
     }
     wrong
 }
 
 /// The comparator's level at each sample, 0 or 1, a sample every so many ticks.
-fn one_bit(level: &Rendered, slicer: Slicer, mv: f64, every: u64) -> Vec<f32> {
+pub(super) fn one_bit(level: &Rendered, slicer: Slicer, mv: f64, every: u64) -> Vec<f32> {
     let mut player = Player::new(level.clone(), &FrontEnd::with_slicer(slicer));
     player.set_trigger_level_mv(mv);
     let (mut samples, mut edges) = (Vec::new(), Vec::new());

@@ -3,6 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `arrival` | errors of the time of arrival |
+//! | `evidence` | what eight samples of a half bit say, learned from scenes |
 //! | `fair` | which decoded frames of a recording count |
 //! | `genie` | what could be decoded at best, the starts being known |
 //! | `native` | a scene or recording through a slicer and the native engine |
@@ -18,6 +19,7 @@
 
 pub mod arrival;
 pub mod device;
+pub mod evidence;
 pub mod fair;
 pub mod genie;
 pub mod limit;
