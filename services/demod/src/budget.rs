@@ -34,6 +34,8 @@ pub(crate) const FIND_PHASE: u32 = 2_400;
 pub(crate) const READ_BYTE: u32 = 280;
 /// Explaining what was read by flips.
 pub(crate) const EXPLAIN: u32 = 2_600;
+/// A second reading with all of this.
+pub(crate) const READ_AGAIN: u32 = FIND_PHASE + 14 * READ_BYTE + EXPLAIN;
 /// A search for a frame without preamble.
 pub(crate) const SEARCH: u32 = 6_000;
 /// Measuring an accepted frame and handing it on.

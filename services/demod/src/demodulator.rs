@@ -385,6 +385,10 @@ impl Demodulator {
                 rest = from_phase(rest, hit + 1);
                 continue;
             }
+            let is_clear = mismatches <= MOST_OF_CLEAR || opposed >= CLEAR;
+            // Behind a clear preamble is likely a frame.
+            let is_likely = mismatches <= MOST_OF_CLEAR && self.budget.affords(budget::READ_AGAIN);
+            let is_read_again = self.is_fresh && (!is_short || is_likely);
             let fine = Fine {
                 ring: rings.arrival,
                 samples: self.meter.second_samples(),
@@ -396,8 +400,8 @@ impl Demodulator {
                 sample,
                 fits,
                 is_short,
-                is_clear: mismatches <= MOST_OF_CLEAR || opposed >= CLEAR,
-                fine: (self.is_fresh && !is_short).then_some((fine, first_bit)),
+                is_clear,
+                fine: is_read_again.then_some((fine, first_bit)),
             };
             try_phases(candidate, &self.heard, &mut self.budget, counters, tried);
             add(&counters.demodulated, 1);
