@@ -7,39 +7,47 @@
 //! ```
 //! So all the time there is goes to the weakest frames that it suffices for. No clock is asked: the same samples give the same frames, on every host.
 //!
-//! What the stages take is measured by `bench cycles`, with all that is called from them; the gate itself (70 cycles a word) is always affordable and not counted.
+//! What the stages take is measured by `bench cycles`, with all that is called from them; the gate itself is always affordable and not counted.
 
-/// Cycles a word brings; it lasts 480. With the gate and the loop around it, core 1 is three quarters busy where there is always something to look at.
-const INCOME: u32 = 277;
+/// Cycles a word brings; it lasts 480. The rest is for the gate (100 cycles a word), the loop around it, and a reserve.
+pub(crate) const INCOME: u32 = 330;
+/// The same where Mode A/C replies are searched for, which takes what is left.
+pub(crate) const INCOME_BESIDE_REPLIES: u32 = 265;
 /// What may be owed for what is likely to be a frame: repair, and bits that began without a preamble, 1.1 ms. It is caught up before the rings of second sampler and converter are overwritten.
 const DEBT: u32 = 130_000;
 /// The most that is saved up over that, 0.7 ms.
-const SAVED: u32 = 90_000;
+const SAVED: u32 = 60_000;
 /// A credit that is short for weak frames: the dearest candidate takes this.
 const SHORT: u32 = DEBT + 10_000;
 /// The most words that core 1 can be late by what it saved up and owes.
 pub(crate) const MOST_LATE_WORDS: u64 = ((DEBT + SAVED) / 480) as u64;
 
+/// Judging a word that shows bits.
+pub(crate) const JUDGE: u32 = 130;
 /// Looking at two words for a preamble, and going on behind them.
-pub(crate) const LOOK: u32 = 1_000;
+pub(crate) const LOOK: u32 = 800;
 /// Fitting a preamble at four phases.
-pub(crate) const FIT: u32 = 550;
+pub(crate) const FIT: u32 = 650;
+/// Trying a candidate, before anything is read.
+pub(crate) const TRY: u32 = 500;
 /// Demodulating a phase from the first sampler.
-pub(crate) const DEMODULATE: u32 = 800;
+pub(crate) const DEMODULATE: u32 = 950;
 /// Repairing it.
-pub(crate) const REPAIR: u32 = 4_500;
+pub(crate) const REPAIR: u32 = 7_000;
 /// Finding the second sampler's phase.
 pub(crate) const FIND_PHASE: u32 = 2_400;
 /// Reading a byte from the second sampler.
-pub(crate) const READ_BYTE: u32 = 280;
+pub(crate) const READ_BYTE: u32 = 400;
+/// Giving up a reading: no bits, or no format that exists.
+pub(crate) const GIVE_UP: u32 = 1_000;
 /// Explaining what was read by flips.
-pub(crate) const EXPLAIN: u32 = 2_600;
+pub(crate) const EXPLAIN: u32 = 4_000;
 /// A second reading with all of this.
 pub(crate) const READ_AGAIN: u32 = FIND_PHASE + 14 * READ_BYTE + EXPLAIN;
 /// A search for a frame without preamble.
 pub(crate) const SEARCH: u32 = 6_000;
 /// Measuring an accepted frame and handing it on.
-pub(crate) const MEASURE: u32 = 2_500;
+pub(crate) const MEASURE: u32 = 4_200;
 
 /// The credit.
 pub(crate) struct Budget {
@@ -53,10 +61,10 @@ impl Budget {
         }
     }
 
-    /// So many words have passed, at most 2^20.
+    /// So many words have passed, at most 2^20, each of which brings so much.
     #[inline(always)]
-    pub(crate) fn earn(&mut self, words: u32) {
-        self.credit = (self.credit + words * INCOME).min(DEBT + SAVED);
+    pub(crate) fn earn(&mut self, words: u32, income: u32) {
+        self.credit = (self.credit + words * income).min(DEBT + SAVED);
     }
 
     #[inline(always)]
@@ -92,7 +100,7 @@ mod tests {
         let half = (SAVED / 2).cast_signed();
         let mut budget = Budget::new();
         assert!(!budget.is_short());
-        budget.earn(1 << 20);
+        budget.earn(1 << 20, INCOME);
         assert_eq!(budget.over_half(), half);
         budget.spend(SAVED - 1);
         assert!(budget.is_short() && budget.affords(REPAIR));
@@ -100,9 +108,9 @@ mod tests {
         assert_eq!(budget.over_half(), -half - DEBT.cast_signed());
         assert!(!budget.affords(1));
         let words = SHORT / INCOME;
-        budget.earn(words);
+        budget.earn(words, INCOME);
         assert!(budget.is_short() && budget.affords(REPAIR));
-        budget.earn(1);
+        budget.earn(1, INCOME);
         assert!(!budget.is_short());
     }
 }

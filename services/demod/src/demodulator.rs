@@ -20,7 +20,7 @@ use crate::budget::{self, Budget};
 use crate::calibration::Calibration;
 use crate::counters::{Counters, add};
 use crate::fine::Fine;
-use crate::gate::{Gate, Pairs, REACH, STEER_WORDS, STEP_WORDS};
+use crate::gate::{CLEAR, Gate, Pairs, REACH, STEER_WORDS, STEP_WORDS};
 use crate::headless::{self, STRONG, WAIT_WORDS};
 use crate::heard::Heard;
 use crate::meter::Meter;
@@ -65,10 +65,9 @@ const MOST_OF_PREAMBLE: u32 = 4;
 
 /// Samples behind the start of a frame with clear bits and a wrong parity within which hits are phases of its own.
 const CLEAR_SAMPLES: u64 = 5;
-/// Mismatches of a preamble up to which, and opposed places of 48 from which on, the first sampler's bits are clear. What is not is weak: its bits go to the second reading at once, and
+/// Mismatches of a preamble up to which (and opposed places from [`CLEAR`] on) the first sampler's bits are clear. What is not is weak: its bits go to the second reading at once, and
 /// where they were refused, what shows no more inside them is themselves.
 const MOST_OF_CLEAR: u32 = 6;
-const CLEAR: u32 = 40;
 /// Mismatches of a preamble that another transmission covers, and of one that is tried where time is short.
 const MOST_OF_COVERED: u32 = 14;
 const MOST_WHERE_SHORT: u32 = 12;
@@ -293,6 +292,7 @@ impl Demodulator {
             // Up to where the gate is steered next.
             let ready = ready.min(STEER_WORDS - first % STEER_WORDS);
             let found = self.gate.find(ring, first, first.wrapping_add(ready));
+            self.budget.spend(budget::JUDGE * self.gate.take_judged());
             let passed = found.map_or(ready, |(word, _)| word.wrapping_sub(first));
             self.pass(passed, counters);
             if let Some((_, pairs)) = found {
@@ -306,7 +306,12 @@ impl Demodulator {
     fn pass(&mut self, words: u32, counters: &Counters) {
         let before = self.next as u32;
         self.next += u64::from(words);
-        self.budget.earn(words);
+        let income = if self.tells_replies {
+            budget::INCOME_BESIDE_REPLIES
+        } else {
+            budget::INCOME
+        };
+        self.budget.earn(words, income);
         if before / STEER_WORDS != self.next as u32 / STEER_WORDS {
             self.gate.steer(self.budget.over_half());
         }

@@ -20,7 +20,9 @@ use crate::heard::Heard;
 use crate::plausible;
 use crate::repair::{Flips, Weakest};
 use crate::ring::ArrivalRing;
-use crate::trial::{Outcome, Sure, aa, exists, explain, judge, received};
+use crate::trial::{
+    Outcome, Sure, aa, exists, explain, is_code_sure, is_explicable, judge, received,
+};
 use mode_s::crc24;
 use mode_s::frame::{LONG_BYTES, SHORT_BYTES};
 
@@ -39,8 +41,8 @@ const LEAST_TO_READ: u32 = 432;
 /// Groups behind which noise is given up, and the certainty that their 42 bits must have: [`LEAST_OF_BITS`].
 const GIVE_UP_GROUPS: usize = 6;
 const LEAST_TO_GO_ON: u32 = LEAST_OF_BITS * (GIVE_UP_GROUPS * GROUP_BITS) as u32 / 16;
-/// Size of the margin of a bit that is beyond doubt and never flipped: one in ten thousand is wrong.
-const BEYOND_DOUBT: u8 = 74;
+/// Size of the margin of a bit that is beyond doubt and never flipped: one in five hundred is wrong.
+const BEYOND_DOUBT: u8 = 50;
 /// Least certainty of a frame to repair, in sixteen bits (1 616 would be every sample right): frames 10 dB over the noise have a mean of 900, one in a hundred less than 780; noise has 415.
 const LEAST_TO_REPAIR: u32 = 672;
 /// The same of bits that noise did not touch: a parity that does not fit them is the sender's, or another's transmission over it.
@@ -53,6 +55,8 @@ const LEAST_OF_UNHEARD: u32 = 744;
 const LEAST_BY_ADDRESS: u32 = 794;
 /// The same of such a frame that says what hardly anybody sends.
 const LEAST_OF_UNUSUAL: u32 = 1_090;
+/// Least size of the margins of the bits of an interrogator's code.
+const LEAST_OF_CODE: u8 = 16;
 /// Bits of a long frame.
 const LONG_BITS: usize = LONG_BYTES * 8;
 
@@ -112,6 +116,24 @@ fn margins(group: &Group) -> [i32; GROUP_BITS] {
     ]
 }
 
+/// Takes out the surest phase, the first of equals, if it is worth a reading.
+#[inline(never)]
+fn surest(sure: &mut [u32; PHASES]) -> Option<usize> {
+    let mut most = LEAST_TO_READ - 1;
+    let mut taken = None;
+    // A loop, not seven copies: SRAM is dear.
+    let all = sure.get_mut(..core::hint::black_box(PHASES));
+    for phase in all.unwrap_or_default().iter_mut().enumerate() {
+        if *phase.1 > most {
+            most = *phase.1;
+            taken = Some(phase);
+        }
+    }
+    let (phase, certainty) = taken?;
+    *certainty = 0;
+    Some(phase)
+}
+
 impl Fine<'_> {
     /// The frame whose first bit begins about this tick, the best of the phases read. `None` if there are no bits.
     #[inline(never)]
@@ -130,32 +152,13 @@ impl Fine<'_> {
         budget.spend(budget::FIND_PHASE);
         let mut sure = self.certainties(at);
         let mut best: Option<Read> = None;
-        for _ in 0..MOST_READ {
-            let mut chosen = 0;
-            for phase in 1..PHASES {
-                if sure[phase] > sure[chosen] {
-                    chosen = phase;
-                }
-            }
-            if sure[chosen] < LEAST_TO_READ {
+        for _ in 0..core::hint::black_box(MOST_READ) {
+            let Some(chosen) = surest(&mut sure) else {
                 break;
-            }
-            sure[chosen] = 0;
-            let from = at.wrapping_add(chosen as u32);
-            // An exact copy proves an address, a repaired one does not.
-            let may_repair = best.as_ref().is_none_or(|best| !best.outcome.is_accepted());
-            let Some(mut read) = self.read_phase(from, may_repair, budget, heard, counters) else {
-                continue;
             };
-            read.later = chosen as i32 - BEFORE.cast_signed();
-            let is_better = best.as_ref().is_none_or(|best| read.outcome > best.outcome);
-            if is_better {
-                let is_new = read.outcome == Outcome::Repaired && !heard.knows(aa(&read.bytes));
-                let is_final = read.outcome.is_accepted() && !is_new || read.is_clear;
-                best = Some(read);
-                if is_final {
-                    break;
-                }
+            let place = (at, chosen as u32);
+            if !self.read_phase(place, &mut best, budget, heard, counters) {
+                break;
             }
         }
         best
@@ -177,20 +180,30 @@ impl Fine<'_> {
         sure
     }
 
-    /// Reads a phase and judges it; tries to repair it where that is wanted. `None`: no bits, or no format that exists.
+    /// Reads a phase, so many samples behind a place, and judges it: `best` is it then, if it is better. Whether another phase is worth reading.
     #[inline(never)]
     fn read_phase(
         self,
-        from: u32,
-        may_repair: bool,
+        (at, phase): (u32, u32),
+        best: &mut Option<Read>,
         budget: &mut Budget,
         heard: &Heard,
         counters: &Counters,
-    ) -> Option<Read> {
+    ) -> bool {
         let mut margins = [0i8; LONG_BITS];
         let mut bytes = [0; LONG_BYTES];
-        let (length, certainty) = self.bits(from, &mut margins, &mut bytes)?;
+        let from = at.wrapping_add(phase);
+        let Some((length, certainty)) = self.bits(from, &mut margins, &mut bytes) else {
+            // No bits, or no format that exists.
+            budget.spend(budget::GIVE_UP);
+            return false;
+        };
         budget.spend(budget::READ_BYTE * length as u32);
+        let (so_far, may_repair) = match best {
+            // An exact copy proves an address, a repaired one does not.
+            Some(best) => (best.outcome, !best.outcome.is_accepted()),
+            None => (Outcome::NoBits, true),
+        };
         let frame = received(&bytes);
         // Two bytes are sixteen bits.
         let is_at_least = |least: u32| certainty * 2 >= least * length as u32;
@@ -203,16 +216,20 @@ impl Fine<'_> {
         } else {
             sure.by_address
         };
-        let outcome = judge(frame, heard, counters).if_sure(is_sure);
+        let mut outcome = judge(frame, heard, counters).if_sure(is_sure);
+        if outcome == Outcome::Interrogator && !is_code_sure(frame, &margins, LEAST_OF_CODE) {
+            outcome = Outcome::Unsure;
+        }
         let mut read = Read {
             outcome,
             has_bits: is_at_least(LEAST_OF_BITS),
             is_clear: is_at_least(LEAST_OF_CLEAR),
-            later: 0,
+            later: phase as i32 - BEFORE.cast_signed(),
             flips: Flips::NONE,
             bytes,
         };
-        if may_repair && outcome.may_be_repaired() && is_at_least(LEAST_TO_REPAIR) {
+        let may_repair = may_repair && outcome.may_be_repaired() && is_explicable(bytes[0], sure);
+        if may_repair && is_at_least(LEAST_TO_REPAIR) {
             budget.spend(budget::EXPLAIN);
             let weakest = Weakest::of(margins.get(..length * 8).unwrap_or_default(), BEYOND_DOUBT);
             let residual = crc24::residual(frame);
@@ -223,7 +240,13 @@ impl Fine<'_> {
                 read.bytes = bytes;
             }
         }
-        Some(read)
+        if read.outcome <= so_far {
+            return true;
+        }
+        let is_new = read.outcome == Outcome::Repaired && !heard.knows(aa(&read.bytes));
+        let is_final = read.outcome.is_accepted() && !is_new || read.is_clear;
+        *best = Some(read);
+        !is_final
     }
 
     /// The bits from a sample on, and their margins; gives the frame's bytes and the sum of the margins' sizes.

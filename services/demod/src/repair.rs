@@ -23,7 +23,7 @@ const CANDIDATES_BY_ADDRESS: usize = 10;
 /// Pairs of them that are tried: two bits that are both far from the least certain are hardly both wrong.
 const MOST_PLACES: usize = CANDIDATES - 1;
 /// Bits of DF.
-const DF_BITS: u32 = 5;
+const DF_BITS: usize = 5;
 /// What a place without a bit adds to a residual: no residual and no address has these bits.
 const NO_SYNDROME: u32 = u32::MAX;
 /// Bits of a long frame.
@@ -96,33 +96,39 @@ impl Weakest {
     #[inline(never)]
     pub(crate) fn of(margins: &[i8], beyond_doubt: u8) -> Self {
         // The least certain so far, the least first: sizes in the upper byte, bits in the lower.
-        let mut least = [u32::from(beyond_doubt) << 8; CANDIDATES];
-        let mut worst = least[CANDIDATES - 1];
-        let mut bit = 0;
-        for &margin in margins {
-            let key = u32::from(margin.unsigned_abs()) << 8 | bit;
-            bit += 1;
+        let most = u32::from(beyond_doubt) << 8;
+        let mut least = [most; CANDIDATES];
+        let mut worst = u32::from(beyond_doubt);
+        let mut bit = DF_BITS as u32;
+        for &margin in margins.get(DF_BITS..).unwrap_or_default() {
+            let size = u32::from(margin.unsigned_abs());
             // Of equals the first come first, and bits beyond doubt never.
-            if key < worst && bit > DF_BITS {
+            if size < worst {
+                let key = size << 8 | bit;
                 let mut place = CANDIDATES - 1;
                 while place > 0 && key < least[place - 1] {
                     least[place] = least[place - 1];
                     place -= 1;
                 }
                 least[place] = key;
-                worst = least[CANDIDATES - 1];
+                worst = least[CANDIDATES - 1] >> 8;
             }
+            bit += 1;
         }
-        // Loops: the library's own maps over arrays would lie in flash.
+        // Loops: the library's own maps over arrays would lie in flash, and copies of the body take SRAM.
         let mut weakest = Self {
             bits: [0; CANDIDATES],
             syndromes: [NO_SYNDROME; CANDIDATES],
         };
         let first = LONG_BITS - margins.len();
         let places = weakest.bits.iter_mut().zip(&mut weakest.syndromes);
-        for ((bit, syndrome), key) in places.zip(least) {
-            *bit = key as u8;
-            if key >> 8 < u32::from(beyond_doubt)
+        for ((bit, syndrome), key) in places.zip(
+            least
+                .get(..core::hint::black_box(CANDIDATES))
+                .unwrap_or_default(),
+        ) {
+            *bit = *key as u8;
+            if *key < most
                 && let Some(&of_bit) = SYNDROMES.get(first + usize::from(*bit))
             {
                 *syndrome = of_bit;

@@ -53,6 +53,9 @@ const LEAST_REPAIRED_QUARTERS: u32 = 5;
 /// Size of the margin of a bit all of whose samples are as they should be: such a bit is never flipped.
 const BEYOND_DOUBT: u8 = 9;
 
+/// Bits of an interrogator's code.
+const CODE_BITS: usize = 7;
+
 /// Samples of the preamble.
 const PREAMBLE: i32 = 64;
 
@@ -208,6 +211,7 @@ pub(crate) fn try_phases(
         fits,
         ..
     } = at;
+    budget.spend(budget::TRY);
     let likeliest = likeliest(&fits);
     (tried.outcome, tried.phase, tried.flips) = (Outcome::NoBits, 0, Flips::NONE);
     (tried.has_bits, tried.is_clear) = (false, false);
@@ -235,9 +239,9 @@ pub(crate) fn try_phases(
         }
     }
     let mut is_last = is_short;
-    if !tried.outcome.is_accepted()
-        && let Some((fine, first_bit)) = at.fine
-    {
+    // A code of an interrogator may be damage to the last bits.
+    let is_open = !tried.outcome.is_accepted() || tried.outcome == Outcome::Interrogator;
+    if is_open && let Some((fine, first_bit)) = at.fine {
         let phase = phase_at(likeliest);
         read_again(fine, first_bit, phase, heard, budget, counters, tried);
         if tried.outcome.is_accepted() {
@@ -277,7 +281,9 @@ fn read_again(
         return;
     };
     (tried.has_bits, tried.is_clear) = (read.has_bits, read.is_clear);
-    if read.outcome > tried.outcome {
+    // What the second sampler says of a code is surer.
+    let is_code = tried.outcome == Outcome::Interrogator && read.outcome.is_accepted();
+    if is_code || read.outcome > tried.outcome {
         // Seven ticks a sample there, fifteen here: two and more are the next sample.
         let later = i32::from(read.later >= 2) - i32::from(read.later <= -2);
         tried.phase = phase + later;
@@ -360,6 +366,20 @@ fn demodulate(
     (outcome, certainty)
 }
 
+/// Whether the bits that make an interrogator's code of a DF11 other than 0 are sure, by their margins. Where they are not, it may be damage to the last bits of a frame without a code.
+#[inline(never)]
+pub(crate) fn is_code_sure(frame: &[u8], margins: &[i8; LONG_BYTES * 8], least: u8) -> bool {
+    let end = core::hint::black_box(SHORT_BYTES * 8);
+    let mut rest = crc24::residual(frame) << (32 - CODE_BITS);
+    for margin in margins.get(end - CODE_BITS..end).unwrap_or_default() {
+        if rest >> 31 != 0 && margin.unsigned_abs() < least {
+            return false;
+        }
+        rest <<= 1;
+    }
+    true
+}
+
 /// Whether the downlink format of a frame's first byte exists: 0, 4, 5, 11, 16 to 21, 24 to 31.
 #[inline(always)]
 pub(crate) fn exists(first: u8) -> bool {
@@ -438,6 +458,16 @@ pub(crate) struct Sure {
     pub(crate) unheard: bool,
 }
 
+/// Whether flips may explain a frame that begins with this byte: DF19 is never repaired, and where an address alone vouches bits must be sure.
+#[inline(always)]
+pub(crate) fn is_explicable(first: u8, sure: Sure) -> bool {
+    match first >> 3 {
+        11 | 17 | 18 => true,
+        19 => false,
+        _ => sure.by_address,
+    }
+}
+
 /// Which flips explain the residual, and whether they may be believed. The bytes are flipped.
 #[inline(never)]
 pub(crate) fn explain(
@@ -449,7 +479,8 @@ pub(crate) fn explain(
     counters: &Counters,
 ) -> Option<(Outcome, Flips)> {
     match bytes[0] >> 3 {
-        19 => None,
+        // As received, as which it is reported, it would still be a frame with that code.
+        11 if residual <= HIGHEST_INTERROGATOR_CODE => None,
         11 | 17 | 18 => {
             let (flips, trials) = weakest.explain(residual);
             add(&counters.trials_repair, trials);
@@ -460,7 +491,7 @@ pub(crate) fn explain(
             let believed = heard.knows(aa(frame)) || sure.unheard && plausible::squitter(frame);
             believed.then_some((Outcome::Repaired, flips))
         }
-        _ if !sure.by_address => None,
+        _ if !is_explicable(bytes[0], sure) => None,
         _ => {
             let (found, trials) = weakest.explain_by_address(residual, heard);
             add(&counters.trials_address_repair, trials);
@@ -527,6 +558,24 @@ mod tests {
             assert_eq!(bytes, sent);
             outcome
         })
+    }
+
+    #[test]
+    fn a_code_is_sure_where_all_its_bits_are() {
+        let mut frame = [0x5D, 0x4D, 0x20, 0x23, 0, 0, 0];
+        let parity = crc24::remainder(&frame[..4]);
+        // The last seven bits of a short frame, the lowest last.
+        let mut margins = [9; LONG_BYTES * 8];
+        margins[52..56].copy_from_slice(&[9, -1, 3, -2]);
+        for (code, sure) in [
+            (0b000_0001, false),
+            (0b000_0010, true),
+            (0b111_1000, true),
+            (0b010_0100, false),
+        ] {
+            frame[4..].copy_from_slice(&(parity ^ code).to_be_bytes()[1..]);
+            assert_eq!(is_code_sure(&frame, &margins, 3), sure, "{code:07b}");
+        }
     }
 
     const SURE: Sure = Sure {
