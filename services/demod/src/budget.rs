@@ -10,7 +10,7 @@
 //! What the stages take is measured by `bench cycles`, with all that is called from them; the gate itself is always affordable and not counted.
 
 /// Cycles a word brings; it lasts 480. The rest is for the gate (100 cycles a word), the loop around it, and a reserve.
-pub(crate) const INCOME: u32 = 330;
+pub(crate) const INCOME: u32 = 300;
 /// The same where Mode A/C replies are searched for, which takes what is left.
 pub(crate) const INCOME_BESIDE_REPLIES: u32 = 265;
 /// What may be owed for what is likely to be a frame: repair, and bits that began without a preamble, 1.1 ms. It is caught up before the rings of second sampler and converter are overwritten.
