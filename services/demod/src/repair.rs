@@ -99,8 +99,8 @@ impl Weakest {
         let most = u32::from(beyond_doubt) << 8;
         let mut least = [most; CANDIDATES];
         let mut worst = u32::from(beyond_doubt);
-        let mut bit = DF_BITS as u32;
-        for &margin in margins.get(DF_BITS..).unwrap_or_default() {
+        let margins_behind_df = margins.get(DF_BITS..).unwrap_or_default();
+        for (bit, &margin) in (DF_BITS as u32..).zip(margins_behind_df) {
             let size = u32::from(margin.unsigned_abs());
             // Of equals the first come first, and bits beyond doubt never.
             if size < worst {
@@ -113,7 +113,6 @@ impl Weakest {
                 least[place] = key;
                 worst = least[CANDIDATES - 1] >> 8;
             }
-            bit += 1;
         }
         // Loops: the library's own maps over arrays would lie in flash, and copies of the body take SRAM.
         let mut weakest = Self {
