@@ -10,9 +10,7 @@
 //! What the stages take is measured by `bench cycles`, with all that is called from them; the gate itself is always affordable and not counted.
 
 /// Cycles a word brings; it lasts 480. The rest is for the gate (100 cycles a word), the loop around it, and a reserve.
-pub(crate) const INCOME: u32 = 300;
-/// The same where Mode A/C replies are searched for, which takes what is left.
-pub(crate) const INCOME_BESIDE_REPLIES: u32 = 265;
+const INCOME: u32 = 300;
 /// What may be owed for what is likely to be a frame: repair, and bits that began without a preamble, 1.1 ms. It is caught up before the rings of second sampler and converter are overwritten.
 const DEBT: u32 = 130_000;
 /// The most that is saved up over that, 0.7 ms.
@@ -61,10 +59,10 @@ impl Budget {
         }
     }
 
-    /// So many words have passed, at most 2^20, each of which brings so much.
+    /// So many words have passed, at most 2^20.
     #[inline(always)]
-    pub(crate) fn earn(&mut self, words: u32, income: u32) {
-        self.credit = (self.credit + words * income).min(DEBT + SAVED);
+    pub(crate) fn earn(&mut self, words: u32) {
+        self.credit = (self.credit + words * INCOME).min(DEBT + SAVED);
     }
 
     #[inline(always)]
@@ -100,7 +98,7 @@ mod tests {
         let half = (SAVED / 2).cast_signed();
         let mut budget = Budget::new();
         assert!(!budget.is_short());
-        budget.earn(1 << 20, INCOME);
+        budget.earn(1 << 20);
         assert_eq!(budget.over_half(), half);
         budget.spend(SAVED - 1);
         assert!(budget.is_short() && budget.affords(REPAIR));
@@ -108,9 +106,9 @@ mod tests {
         assert_eq!(budget.over_half(), -half - DEBT.cast_signed());
         assert!(!budget.affords(1));
         let words = SHORT / INCOME;
-        budget.earn(words, INCOME);
+        budget.earn(words);
         assert!(budget.is_short() && budget.affords(REPAIR));
-        budget.earn(1, INCOME);
+        budget.earn(1);
         assert!(!budget.is_short());
     }
 }

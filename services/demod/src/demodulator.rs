@@ -306,12 +306,7 @@ impl Demodulator {
     fn pass(&mut self, words: u32, counters: &Counters) {
         let before = self.next as u32;
         self.next += u64::from(words);
-        let income = if self.tells_replies {
-            budget::INCOME_BESIDE_REPLIES
-        } else {
-            budget::INCOME
-        };
-        self.budget.earn(words, income);
+        self.budget.earn(words);
         if before / STEER_WORDS != self.next as u32 / STEER_WORDS {
             self.gate.steer(self.budget.over_half());
         }
